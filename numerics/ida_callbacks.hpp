@@ -43,7 +43,7 @@ struct IdaCallbacks {
   double last_correction = 0.0;          ///< [-]
   double rate = 0.0;                     ///< the last correction over the one before [-]
   double remainder = unknown_remainder;  ///< factor on the last correction [-]
-  int limiting_unknown = -1;                     // the unknown with the largest correction where it did not converge
+  int limiting_unknown = -1;             // the unknown with the largest correction where it did not converge
 
   static constexpr double unknown_remainder = 20.0;
 

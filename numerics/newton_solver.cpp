@@ -30,9 +30,9 @@ struct Newton {
   int most_renewals;
   std::optional<QuasiNewton> corrected;  // where a step may have renewals
   CorrectionGuess guess{};
-  double coefficient = 0.0;  // leading one, of the matrix
-  bool jacobian_aged = false;         // the matrix of an earlier step took as many iterations as a new one costs
-  bool jacobian_failed = false;     // and at the last step it did not do at all
+  double coefficient = 0.0;      // leading one, of the matrix
+  bool jacobian_aged = false;    // the matrix of an earlier step took as many iterations as a new one costs
+  bool jacobian_failed = false;  // and at the last step it did not do at all
   SUNNonlinSolSysFn system = nullptr;
   SUNNonlinSolLSetupFn setup = nullptr;
   SUNNonlinSolLSolveFn solve = nullptr;

@@ -148,10 +148,12 @@ std::optional<double> first_touch(const FinishedMotion& run, std::size_t wire) {
   }
   for (std::size_t k = 0; k < motion.wire_pairs.size(); ++k) {
     const std::array<int, 2>& wires = motion.wire_pairs[k].wires;
-    if (at(wires[0]) == wire || at(wires[1]) == wire) consider(motion.contacts.size() + motion.point_contacts.size() + k);
+    if (at(wires[0]) == wire || at(wires[1]) == wire)
+      consider(motion.contacts.size() + motion.point_contacts.size() + k);
   }
   if (wire >= motion.wires.size())
-    consider(motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size() + wire - motion.wires.size());
+    consider(motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size() + wire -
+             motion.wires.size());
   return first;
 }
 

@@ -21,7 +21,8 @@ std::optional<double> sign_on(const coupling::Motion& motion, int contact, int b
   std::size_t k = at(contact);
   if (k < motion.contacts.size()) return motion.contacts[k].body == body ? std::optional(-1.0) : std::nullopt;
   k -= motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size();
-  if (at(contact) < motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size()) return std::nullopt;
+  if (at(contact) < motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size())
+    return std::nullopt;
   if (k < motion.law_wires.size()) return is_it(motion.law_wires[k].shaft.carrier) ? std::optional(-1.0) : std::nullopt;
   const coupling::BodyContact& c = motion.body_contacts[k - motion.law_wires.size()];
   if (is_it(c.carrier)) return 1.0;

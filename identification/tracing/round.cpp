@@ -158,8 +158,9 @@ std::string too_small(const Model& model, const Data& data, const Current& now, 
 }
 
 /// What a refit says of an effect: BIC, plausibility, size, and whether held-out series gain by it.
-void judge(const Model& model, const Data& data, const HeldOut& heldout, const Current& now, const AcceptanceCriteria& demands,
-           std::optional<double> heldout_before, Candidate& candidate, const Fit& refitted) {
+void judge(const Model& model, const Data& data, const HeldOut& heldout, const Current& now,
+           const AcceptanceCriteria& demands, std::optional<double> heldout_before, Candidate& candidate,
+           const Fit& refitted) {
   const Fit& current = now.fit;
   candidate.refitted = refitted.report.usable();
   if (!candidate.refitted) return;
@@ -279,8 +280,8 @@ bool as_one_that_lost(const std::vector<Candidate>& candidates, const std::vecto
 
 /// Refits the significant ones and what is nearly in their direction. One fit a candidate, empty where there was none.
 std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
-                            const AcceptanceCriteria& demands, std::vector<Candidate>& candidates, const std::string& round,
-                            Progress& progress) {
+                            const AcceptanceCriteria& demands, std::vector<Candidate>& candidates,
+                            const std::string& round, Progress& progress) {
   std::vector<Fit> fits(candidates.size());
   const std::optional<double> before = heldout.rmse(current.fit.settings);
   double least = current.fit.chi2;

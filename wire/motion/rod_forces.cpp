@@ -236,7 +236,7 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
 
 // No product is joined with its sum in one rounding, so that all processors give the same bits.
 [[gnu::target("avx2")]] void RodForces::evaluate_avx2(const RodModel& model, const DaePoint& at, RodInstant& trial,
-                                                     const RodSums& out) {
+                                                      const RodSums& out) {
   work(model, at, trial, out);
 }
 

@@ -4,6 +4,8 @@
 #include "coupling/dynamics/contact/contact_integral.hpp"
 #include "coupling/dynamics/contact/dual_frames.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +15,7 @@ namespace snare::coupling {
 
 using Eigen::Vector3d;
 using multibody::Wrench;
+using numerics::DaePoint;
 using numerics::VectorView;
 
 namespace {
@@ -163,8 +166,36 @@ bool BodyContactPart::outgrows_pattern(const numerics::DaePoint& at) {
   return more;
 }
 
-void BodyContactPart::restore_state(const VectorView& /*y*/, std::span<const double>& /*memory*/) {
+void BodyContactPart::save_state(std::vector<double>& memory) const {
+  memory.insert(memory.end(), {seen_.closed ? 1.0 : 0.0, seen_.sticking ? 1.0 : 0.0});
+}
+
+void BodyContactPart::restore_state(const VectorView& /*y*/, std::span<const double>& memory) {
   coupled_.assign(coupled_.size(), false);
+  seen_.closed = numerics::take(memory) != 0.0;
+  seen_.sticking = numerics::take(memory) != 0.0;
+}
+
+std::optional<base::InputProblem> BodyContactPart::overlap(const VectorView& y, double /*tolerance*/) const {
+  constexpr double of_radius = 0.1;
+  const double deepest = of_radius * contact_.radius;
+  const double depth_now = contact_.radius > 0.0 ? depth(y) : 0.0;
+  if (depth_now <= deepest) return {};
+  return base::InputProblem{
+      "", 0, contact_.name + ".gap", fmt::format("{:.6g} m", -depth_now),
+      fmt::format("must be >= {:.6g} m at the start, a tenth of the radius of what touches", -deepest)};
+}
+
+std::vector<MotionEvent> BodyContactPart::changes(const DaePoint& now, double time_before, bool event) {
+  const auto [sample, work, tension] = pressing(now.y);
+  const bool closed = !work.wrenches.empty();
+  const Seen before = std::exchange(seen_, {closed, sample.sticking});
+  std::vector<MotionEvent> events;
+  if (closed && !before.closed && !event) events.push_back({.time = time_before, .kind = MotionEvent::Kind::touch});
+  if (!has_bristle() || !closed || !before.closed || sample.sticking == before.sticking) return events;
+  const auto kind = sample.sticking ? MotionEvent::Kind::stick : MotionEvent::Kind::slip;
+  events.push_back({.time = now.time, .kind = kind, .approach_speed = sample.slip_speed});
+  return events;
 }
 
 Vector3d BodyContactPart::bristle(const VectorView& y, std::size_t point) const {

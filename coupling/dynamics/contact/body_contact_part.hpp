@@ -2,7 +2,7 @@
 
 #include "coupling/contact/shape.hpp"
 #include "coupling/dynamics/contact/point_tree.hpp"
-#include "coupling/dynamics/contact/press_part.hpp"
+#include "coupling/dynamics/contact/unilateral_force_part.hpp"
 #include "coupling/dynamics/model/body_contact.hpp"
 
 #include <array>
@@ -32,6 +32,7 @@ class BodyContactPart final : public UnilateralForcePart {
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
   /// Where a point's bristle acts that is not in the pattern.
   bool outgrows_pattern(const numerics::DaePoint& at) override;
+  void save_state(std::vector<double>& memory) const override;
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
 
   /// Whether friction has bristles, three unknowns a point: see bristle_of.
@@ -39,7 +40,14 @@ class BodyContactPart final : public UnilateralForcePart {
   /// First of the three of a point; only with bristles.
   [[nodiscard]] int bristle_of(std::size_t point) const { return bristle_ + 3 * static_cast<int>(point); }
   /// dz/dt [m/s] of the bristles into their places of `rate`, at unknowns y in SI units.
-  void set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const;
+  void set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const override;
+  [[nodiscard]] bool has_body_bristles() const override { return has_bristle(); }
+  /// A point of the other pressed into the shape by more than a tenth of its radius would be thrown out.
+  [[nodiscard]] std::optional<base::InputProblem> overlap(const numerics::VectorView& y,
+                                                          double tolerance) const override;
+  /// Touches that began at a start, of which the integrator has no event; stick and slip.
+  [[nodiscard]] std::vector<MotionEvent> changes(const numerics::DaePoint& now, double time_before,
+                                                 bool event) override;
 
   [[nodiscard]] std::vector<multibody::Wrench> wrenches(const numerics::VectorView& y) const override;
   [[nodiscard]] double depth(const numerics::VectorView& y) const override;
@@ -66,6 +74,11 @@ class BodyContactPart final : public UnilateralForcePart {
   PointTree tree_;
   int bristle_ = 0;
   std::vector<bool> coupled_;  // points in the pattern
+  /// How it was at the last accepted step.
+  struct Seen {
+    bool closed = false, sticking = false;
+  };
+  Seen seen_;
 };
 
 }  // namespace snare::coupling

@@ -114,7 +114,8 @@ ContactChange contact_change(const MotionFriction& friction, const ContactGeomet
     c.elastic = g.elastic[1] * c.gap;
     c.elastic_rate = g.elastic[2] * g.gap_rate * c.gap + g.elastic[1] * c.gap_rate;
     c.friction = g.friction.by_sliding * c.sliding + g.friction.by_normal * c.load + g.friction.by_elastic * c.elastic;
-    for (std::size_t h = 0; h < 2; ++h) c.friction += g.shape_functions[h] * g.of_bristles[h].by_bristle * d.bristles[h];
+    for (std::size_t h = 0; h < 2; ++h)
+      c.friction += g.shape_functions[h] * g.of_bristles[h].by_bristle * d.bristles[h];
     c.force -= g.in_world(c.friction) + g.friction.force.x() * dalong + g.friction.force.y() * dacross;
   }
   // Torque on the body, in the body: m = R^T (r x -f), dm = R^T (d(r x -f) - phi x (r x -f)).

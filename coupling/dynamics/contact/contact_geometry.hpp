@@ -49,7 +49,7 @@ struct ContactGeometry : CurvePoint {
   BristleState state;                                 ///< the sliding velocity w in a and b, lambda, lambda_e
   TangentForce friction;
   std::array<TangentForce, 2> of_bristles;          ///< of each vertex's bristle, if there are any
-  std::array<double, 2> shape_functions{};                     ///< shares of them in `friction`
+  std::array<double, 2> shape_functions{};          ///< shares of them in `friction`
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< f
 
   /// dlambda_e/dt [N/(m s)], by a law [N/s].

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coupling/dynamics/contact/closed_stretches.hpp"
+#include "coupling/dynamics/contact/contact_intervals.hpp"
 
 #include <algorithm>
 #include <array>

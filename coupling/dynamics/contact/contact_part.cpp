@@ -162,7 +162,8 @@ double ContactPart::foundation_share(double coordinate) const {
   return share;
 }
 
-void ContactPart::add_stretch(int e, const ContactInterval& s, std::size_t index, std::vector<QuadraturePoint>& nodes) const {
+void ContactPart::add_stretch(int e, const ContactInterval& s, std::size_t index,
+                              std::vector<QuadraturePoint>& nodes) const {
   const BezierWire& curve = search_.curve();
   const double length = curve.length(e);
   const auto add = [&](const QuadraturePoint& n) {
@@ -407,7 +408,8 @@ void ContactPart::add_end_derivatives(int element, double u, const BristleMeans&
   if (growth == 0.0 || steep < 1e-12) return;
   Eigen::Vector4d by_bristles;  // rows of the bristles by the gap
   for (int h = 0; h < 2; ++h) {
-    const Vector2d flow = 0.5 * growth / steep * n.weight * n.shape_functions[base::at(h)] * y.segment<2>(bristle_of(element + h));
+    const Vector2d flow =
+        0.5 * growth / steep * n.weight * n.shape_functions[base::at(h)] * y.segment<2>(bristle_of(element + h));
     by_bristles.segment<2>(2 * h) = means.change(element + h, 0.0, flow);
   }
   // dg = n.(dX - dp - phi x r), phi = 4 R Q^T dq.

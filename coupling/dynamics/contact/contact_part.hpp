@@ -1,8 +1,8 @@
 #pragma once
 
 #include "coupling/dynamics/contact/bristle_means.hpp"
-#include "coupling/dynamics/contact/closed_stretches.hpp"
 #include "coupling/dynamics/contact/contact_geometry.hpp"
+#include "coupling/dynamics/contact/contact_intervals.hpp"
 #include "coupling/dynamics/contact/contact_search.hpp"
 #include "coupling/dynamics/model/options.hpp"
 #include "coupling/dynamics/model/press.hpp"
@@ -92,7 +92,7 @@ class ContactPart final : public numerics::DaePart {
     int first = 0;        // of the four vertices
     Eigen::Vector4d value, slope, bend;
     std::array<double, 2> shape_functions{};  // of the element's vertices
-    bool follows = false;          // the minimum as it moves along the wire: a law's
+    bool follows = false;                     // the minimum as it moves along the wire: a law's
     ContactPlace place = ContactPlace::wire;
     std::size_t stretch = 0;
   };
@@ -100,7 +100,7 @@ class ContactPart final : public numerics::DaePart {
     InputMemo inputs;
     std::vector<QuadraturePoint> nodes;
     std::vector<ContactInterval> stretches;  // of single elements
-    std::vector<int> elements;             // of each stretch
+    std::vector<int> elements;               // of each stretch
     std::vector<GapPlace> minima;
     std::vector<ContactGeometry> geometries;  // of the nodes
     BristleMeans bristles;
@@ -113,7 +113,8 @@ class ContactPart final : public numerics::DaePart {
                                            const numerics::VectorView& y) const;
   [[nodiscard]] BristleFlow bristle_flow_at(const QuadraturePoint& node, std::size_t h, const ContactGeometry& g,
                                             const numerics::VectorView& y) const;
-  void add_stretch(int element, const ContactInterval& stretch, std::size_t index, std::vector<QuadraturePoint>& nodes) const;
+  void add_stretch(int element, const ContactInterval& stretch, std::size_t index,
+                   std::vector<QuadraturePoint>& nodes) const;
   [[nodiscard]] bool stops(wire::End end) const;
   [[nodiscard]] double foundation_share(double coordinate) const;
   [[nodiscard]] QuadraturePoint node(int element, double u, double weight) const;
@@ -146,7 +147,7 @@ class ContactPart final : public numerics::DaePart {
   int bristle_ = 0;
   numerics::PatternSlots slots_;
   AcceptedPress accepted_;
-  mutable ContactCache found_;                                                       // of the last place that was asked for
+  mutable ContactCache found_;                                                // of the last place that was asked for
   Eigen::Matrix<double, bristle_rows + 4, bristle_columns + 4> derivatives_;  // workspace
 };
 

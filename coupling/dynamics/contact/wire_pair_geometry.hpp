@@ -58,7 +58,7 @@ struct PairGeometry {
   BristleState state;           ///< w in a and b, p and its stored part
   TangentForce friction;
   std::array<TangentForce, 2> of_bristles;           ///< of the bristles of A's element, if there are any
-  std::array<double, 2> shape_functions{};                      ///< shares of them in `friction`
+  std::array<double, 2> shape_functions{};           ///< shares of them in `friction`
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< f [N/m]
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< M [N]
 

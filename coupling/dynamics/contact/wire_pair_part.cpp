@@ -198,7 +198,7 @@ void WirePairPart::find_along(std::size_t own, const NearElements& near, Contact
   found.closed.clear();
   found.minima.clear();
   ContactIntervals(length, along.way(near.element), along.largest_bend(near.element) / (length * length),
-                  search_.resolution(own))
+                   search_.resolution(own))
       .find(gap, gap(0.0), gap(1.0), found.closed, found.minima);
   for (const ContactInterval& s : found.closed) {
     const double begin = curve.begin(near.element);
@@ -367,8 +367,8 @@ void WirePairPart::jacobian(const DaePoint& at, double c, std::vector<double>& v
   }
 }
 
-void WirePairPart::add_column(const QuadraturePoint& n, const PairGeometry& g, const PairDirection& d, const VectorView& y,
-                              Eigen::Ref<Eigen::Matrix<double, 28, 1>> column) const {
+void WirePairPart::add_column(const QuadraturePoint& n, const PairGeometry& g, const PairDirection& d,
+                              const VectorView& y, Eigen::Ref<Eigen::Matrix<double, 28, 1>> column) const {
   const PairChange c = pair_change(pair_.friction, g, d);
   for (std::size_t s = 0; s < 2; ++s) {
     const QuadraturePoint::Place& p = n.places[s];
@@ -438,7 +438,8 @@ void WirePairPart::add_end_jacobian(const QuadraturePoint& n, const VectorView& 
   const double steep = std::abs(g.normal.dot(g.sides[0].slope));
   if (growth == 0.0 || steep < 1e-12) return;
   for (int h = 0; h < 2; ++h) {
-    const Vector2d flow = 0.5 * growth / steep * n.weight * n.shape_functions[base::at(h)] * y.segment<2>(bristle_of(n, h));
+    const Vector2d flow =
+        0.5 * growth / steep * n.weight * n.shape_functions[base::at(h)] * y.segment<2>(bristle_of(n, h));
     const Vector2d by_gap = found_.bristles[n.own].change(n.places[0].element + h, 0.0, flow);
     for (std::size_t s = 0; s < 2; ++s) {  // dg = n.(dX_A - dX_B)
       const Vector3d normal = s == 0 ? g.normal : Vector3d(-g.normal);
@@ -450,7 +451,8 @@ void WirePairPart::add_end_jacobian(const QuadraturePoint& n, const VectorView& 
   }
 }
 
-void WirePairPart::add_block(const QuadraturePoint& n, const LocalBlock& block, const numerics::PatternValues& into) const {
+void WirePairPart::add_block(const QuadraturePoint& n, const LocalBlock& block,
+                             const numerics::PatternValues& into) const {
   constexpr int none = -1;
   std::array<int, 28> rows;
   std::array<int, 52> columns;

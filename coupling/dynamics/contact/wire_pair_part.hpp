@@ -1,8 +1,9 @@
 #pragma once
 
 #include "coupling/dynamics/contact/bristle_means.hpp"
-#include "coupling/dynamics/contact/closed_stretches.hpp"
+#include "coupling/dynamics/contact/contact_intervals.hpp"
 #include "coupling/dynamics/contact/contact_touches.hpp"
+#include "coupling/dynamics/contact/interaction.hpp"
 #include "coupling/dynamics/contact/wire_pair_geometry.hpp"
 #include "coupling/dynamics/contact/wire_pair_search.hpp"
 #include "coupling/dynamics/model/press.hpp"
@@ -23,7 +24,7 @@ namespace snare::coupling {
 /// by Gauss's rule on every closed stretch of an element. Wires that cross meet Hertz's form of law, wires that lie along each
 /// other k d a length, and between these nothing is told apart. Friction with bristles adds deflections at the vertices of
 /// both wires: see ContactPart.
-class WirePairPart final : public numerics::DaePart {
+class WirePairPart final : public numerics::DaePart, public Interaction {
  public:
   WirePairPart(const WirePair& pair, const wire::RodPart& first, const wire::RodPart& second);
 
@@ -41,7 +42,7 @@ class WirePairPart final : public numerics::DaePart {
   void save_state(std::vector<double>& memory) const override { touches_.save_state(memory); }
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
   /// The same as `accept` at a start, unknowns y in SI units.
-  void update_candidates(const numerics::VectorView& y) {
+  void update_candidates(const numerics::VectorView& y) override {
     search_.update(y);
     found_.inputs.forget();
   }
@@ -68,19 +69,28 @@ class WirePairPart final : public numerics::DaePart {
   /// At unknowns y of the run (SI units).
   [[nodiscard]] Sums sums(const numerics::VectorView& y) const;
   /// dz/dt [m/s] of the bristles into their places of `rate`, at unknowns y in SI units.
-  void set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const;
+  void set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const override;
+
+  void append(std::vector<numerics::DaePart*>& parts) override { parts.push_back(this); }
+  [[nodiscard]] std::optional<base::InputProblem> overlap(const numerics::VectorView& y,
+                                                          double tolerance) const override;
+  [[nodiscard]] double longest_step() const override { return search_.longest_step(); }
+  [[nodiscard]] double energy(const numerics::DaePoint& at) const override { return sums(at.y).energy; }
+  void add_rates(const numerics::DaePoint& at, const IntegralRates& rates) const override;
+  [[nodiscard]] Load load(const numerics::DaePoint& at) const override;
 
   /// Sums over what is closed; gap and place, on the first wire, are those of the stretch that presses most, or of the nearest
   /// points. Its points: the closed stretches along the first wire. y in SI units.
-  [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const;
-  /// The same of closed stretches alone: without a search. y in SI units.
-  [[nodiscard]] ContactSample closed_sample(const numerics::VectorView& y) const;
-  [[nodiscard]] const ContactTouches& touches() const { return touches_; }
-  /// What has happened since the last state told: see ContactTouches.
-  [[nodiscard]] std::vector<MotionEvent> observe(const ContactSample& sample, const ContactTouches::Seen& now,
-                                                 const ContactTouches::Seen& before);
+  [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const override;
+  [[nodiscard]] std::optional<int> held_states() const override { return touches_.held_states(); }
+  void take_from_mounts(const numerics::VectorView& y, std::vector<Eigen::Vector3d>& mount_forces) const override;
+  [[nodiscard]] Observed observe(const numerics::DaePoint& now, double time_before,
+                                 const Eigen::VectorXd& before) override;
+  [[nodiscard]] bool is_law() const override { return false; }
 
  private:
+  /// Of closed stretches alone: without a search. y in SI units.
+  [[nodiscard]] ContactSample closed_sample(const numerics::VectorView& y) const;
   /// A place on the wire along which the load is integrated, with the nearest point of the other.
   struct QuadraturePoint {
     std::size_t own = 0;  // wire along which it is integrated
@@ -94,7 +104,7 @@ class WirePairPart final : public numerics::DaePart {
       Eigen::Vector4d value, slope, bend;
       std::array<double, 3> share{}, share_slope{};  // of the edges between the four vertices in the section's turn
     };
-    std::array<Place, 2> places;   // on its own wire, on the other
+    std::array<Place, 2> places;              // on its own wire, on the other
     std::array<double, 2> shape_functions{};  // of the vertices of its own element
   };
   struct Stretch {
@@ -110,7 +120,7 @@ class WirePairPart final : public numerics::DaePart {
     std::array<CubicPieces, 2> pieces;
     std::vector<PairGeometry> geometries;  // of the nodes
     std::array<BristleMeans, 2> bristles;  // of both wires
-    std::vector<ContactInterval> closed;     // workspace
+    std::vector<ContactInterval> closed;   // workspace
     std::vector<GapPlace> minima;          // workspace
   };
   /// Forces on the four vertices on which a place depends [N], and the moment that is taken as held [N m].
@@ -126,7 +136,8 @@ class WirePairPart final : public numerics::DaePart {
   void add_up_bristles(const numerics::VectorView& y, ContactCache& found) const;
   void find_along(std::size_t own, const NearElements& near, ContactCache& found) const;
   [[nodiscard]] QuadraturePoint::Place place(std::size_t wire, int element, double u) const;
-  [[nodiscard]] PairSide side(std::size_t wire, const QuadraturePoint::Place& place, const numerics::VectorView& y) const;
+  [[nodiscard]] PairSide side(std::size_t wire, const QuadraturePoint::Place& place,
+                              const numerics::VectorView& y) const;
   [[nodiscard]] PairGeometry geometry(const QuadraturePoint& node, const numerics::VectorView& y) const;
   /// State of the bristle of one of the element's two vertices at a node, and its flow there.
   [[nodiscard]] BristleState bristle_state(const QuadraturePoint& node, std::size_t h, const PairGeometry& g,
@@ -134,13 +145,17 @@ class WirePairPart final : public numerics::DaePart {
   [[nodiscard]] BristleFlow bristle_flow_at(const QuadraturePoint& node, std::size_t h, const PairGeometry& g,
                                             const numerics::VectorView& y) const;
   [[nodiscard]] std::pair<double, double> gap_at(const numerics::VectorView& y, double coordinate) const;
-  [[nodiscard]] std::size_t wire_of(const QuadraturePoint& n, std::size_t s) const { return s == 0 ? n.own : 1 - n.own; }
+  [[nodiscard]] std::size_t wire_of(const QuadraturePoint& n, std::size_t s) const {
+    return s == 0 ? n.own : 1 - n.own;
+  }
   /// First of the two of the vertex h of the node's element.
-  [[nodiscard]] int bristle_of(const QuadraturePoint& n, int h) const { return bristles_[n.own] + 2 * (n.places[0].element + h); }
+  [[nodiscard]] int bristle_of(const QuadraturePoint& n, int h) const {
+    return bristles_[n.own] + 2 * (n.places[0].element + h);
+  }
   /// What the node does to the wire of one of its places.
   [[nodiscard]] NodalLoad nodal_load(const QuadraturePoint& node, const PairGeometry& g, std::size_t s) const;
-  void add_column(const QuadraturePoint& node, const PairGeometry& g, const PairDirection& d, const numerics::VectorView& y,
-                  Eigen::Ref<Eigen::Matrix<double, 28, 1>> column) const;
+  void add_column(const QuadraturePoint& node, const PairGeometry& g, const PairDirection& d,
+                  const numerics::VectorView& y, Eigen::Ref<Eigen::Matrix<double, 28, 1>> column) const;
   void add_node_jacobian(const QuadraturePoint& node, const PairGeometry& g, const numerics::VectorView& y,
                          LocalBlock& block) const;
   /// What the bristles feel of the end of a closed stretch, where p_e vanishes but not its rate: see ContactPart.

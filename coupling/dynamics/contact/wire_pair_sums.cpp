@@ -4,6 +4,8 @@
 #include "coupling/dynamics/contact/contact_integral.hpp"
 #include "coupling/dynamics/contact/wire_pair_part.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -118,7 +120,8 @@ ContactSample WirePairPart::closed_sample(const VectorView& y) const {
   return sum;
 }
 
-ContactSample WirePairPart::sample(const VectorView& y) const {
+ContactSample WirePairPart::sample(const numerics::DaePoint& at) const {
+  const VectorView& y = at.y;
   ContactSample s = closed_sample(y);
   if (s.closed) return s;
   const NearestPoints n = search_.nearest(y);
@@ -147,10 +150,47 @@ std::pair<double, double> WirePairPart::gap_at(const VectorView& y, double coord
   return {g.gap, g.gap_rate};
 }
 
-std::vector<MotionEvent> WirePairPart::observe(const ContactSample& sample, const ContactTouches::Seen& now,
-                                               const ContactTouches::Seen& before) {
-  return touches_.observe(sample, now, before,
-                          [this](const VectorView& y, double coordinate) { return gap_at(y, coordinate); });
+std::optional<base::InputProblem> WirePairPart::overlap(const VectorView& y, double tolerance) const {
+  const NearestPoints n = search_.nearest(y);
+  if (n.gap >= -0.01 * std::min(pair_.radii[0], pair_.radii[1]) - tolerance) return {};
+  return base::InputProblem{
+      "", 0, pair_.name + ".gap",
+      fmt::format("{} at {} m along the one wire and {} m along the other", n.gap, n.coordinates[0], n.coordinates[1]),
+      "must be >= 0 m at the start"};
+}
+
+// Both wires are counted: what their contact does to momentum is what it presses on rigidly held components, and what it
+// does not twist them.
+void WirePairPart::add_rates(const numerics::DaePoint& at, const IntegralRates& rates) const {
+  const Sums s = sums(at.y);
+  Eigen::Ref<Eigen::VectorXd> all = rates.all;
+  all.segment<3>(rates.force) = s.force;
+  all[rates.normal] = s.normal;
+  all[integral::dissipated] += s.lost_power;
+  all.segment<3>(integral::outer_moment) -= s.held_moment;
+  for (std::size_t w = 0; w < 2; ++w) take_held(*rods_[w], s.on_mounts[w], at, all);
+}
+
+Interaction::Load WirePairPart::load(const numerics::DaePoint& at) const {
+  const Sums s = sums(at.y);
+  return {s.force, s.normal};
+}
+
+void WirePairPart::take_from_mounts(const VectorView& y, std::vector<Vector3d>& mount_forces) const {
+  const Sums s = sums(y);
+  for (std::size_t w = 0; w < 2; ++w) {
+    for (std::size_t end = 0; end < 2; ++end) mount_forces[2 * base::at(pair_.wires[w]) + end] -= s.on_mounts[w][end];
+  }
+}
+
+Interaction::Observed WirePairPart::observe(const numerics::DaePoint& now, double time_before,
+                                            const Eigen::VectorXd& before) {
+  const ContactSample sum = closed_sample(now.y);
+  Observed seen{.normal = sum.normal_force,
+                .events = touches_.observe(sum, {now.time, now.y}, {time_before, before},
+                                           [this](const VectorView& y, double arc) { return gap_at(y, arc); })};
+  for (const ContactSample& s : sum.points) seen.penetration = std::max(seen.penetration, -s.gap);
+  return seen;
 }
 
 }  // namespace snare::coupling

@@ -105,4 +105,25 @@ LawPart::Power LawPart::power(const DaePoint& at) const {
   return {spring_.law.energy(g.penetration), (g.law.x() - spring_.law.elastic(g.penetration).x()) * g.rate};
 }
 
+// The plane takes the force from outside, and does work where it moves.
+void LawPart::add_rates(const DaePoint& at, const IntegralRates& rates) const {
+  const ContactSample s = sample(at);
+  Eigen::Ref<Eigen::VectorXd> all = rates.all;
+  all.segment<3>(rates.force) = s.force;
+  all[rates.normal] = s.normal_force;
+  all[integral::laws] += power(at).lost;
+  all[integral::work] -= s.normal_force * spring_.origin_speed;
+  all.segment<3>(integral::outer) -= s.force;
+  all.segment<3>(integral::outer_moment) -= s.point.cross(s.force);
+}
+
+Interaction::Load LawPart::load(const DaePoint& at) const {
+  const ContactSample s = sample(at);
+  return {s.force, s.normal_force};
+}
+
+Interaction::Observed LawPart::observe(const DaePoint& now, double /*time_before*/, const Eigen::VectorXd& /*before*/) {
+  return {.normal = sample(now).normal_force, .events = {}};
+}
+
 }  // namespace snare::coupling

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "coupling/dynamics/contact/interaction.hpp"
 #include "coupling/dynamics/joints/body_part.hpp"
 #include "coupling/dynamics/model/result.hpp"
 
@@ -10,7 +11,7 @@ namespace snare::coupling {
 /// A law between a point of a body and a plane fixed in the world, in place of a wire.        theory.md (L.5)
 ///   d = n.(p_WP - p_0) - v_0 t,  d' = n.v_WP - v_0;  the body gets -F(d, d') n at P
 /// It has no unknowns of its own and adds to the body's rows.
-class LawPart final : public numerics::DaePart {
+class LawPart final : public numerics::DaePart, public Interaction {
  public:
   LawPart(const PointContactLaw& spring, const BodyPart& body) : spring_(spring), body_(body) {}
 
@@ -24,13 +25,21 @@ class LawPart final : public numerics::DaePart {
   void events(const numerics::DaePoint& at, std::span<double> values) override;
 
   /// What it does at a state: gap -d [m], force F n [N] on what stands for the wire, and its point on the body [m].
-  [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const;
+  [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const override;
   /// Energy of the law's spring [J], and power that its damping takes from body and plane [W], >= 0.
   struct Power {
     double energy = 0.0;
     double lost = 0.0;
   };
   [[nodiscard]] Power power(const numerics::DaePoint& at) const;
+
+  void append(std::vector<numerics::DaePart*>& parts) override { parts.push_back(this); }
+  [[nodiscard]] double energy(const numerics::DaePoint& at) const override { return power(at).energy; }
+  [[nodiscard]] double law_loss(const numerics::DaePoint& at) const override { return power(at).lost; }
+  void add_rates(const numerics::DaePoint& at, const IntegralRates& rates) const override;
+  [[nodiscard]] Load load(const numerics::DaePoint& at) const override;
+  [[nodiscard]] Observed observe(const numerics::DaePoint& now, double time_before,
+                                 const Eigen::VectorXd& before) override;
 
  private:
   struct Geometry;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coupling/dynamics/contact/press_part.hpp"
+#include "coupling/dynamics/contact/unilateral_force_part.hpp"
 #include "coupling/dynamics/model/law_wire.hpp"
 
 #include <Eigen/Core>
@@ -38,7 +38,7 @@ class LawWirePart final : public UnilateralForcePart {
   [[nodiscard]] Shape shape(const numerics::VectorView& y) const;
 
   /// Looks whether the shaft is within reach, and before the wire; to be told the start, y in SI units.
-  void update_candidates(const numerics::VectorView& y);
+  void update_candidates(const numerics::VectorView& y) override;
   void accept(const numerics::DaePoint& at) override { update_candidates(at.y); }
   void save_state(std::vector<double>& memory) const override;
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;

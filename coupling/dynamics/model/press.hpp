@@ -9,15 +9,15 @@
 namespace snare::coupling {
 
 /// How hard a contact presses.
-struct UnilateralForce {
+struct Press {
   double depth = 0.0;  ///< the largest [m], 0: nothing touches
   double load = 0.0;   ///< in all [N]
 };
 
 /// What is closed, by its nodes with weights [m] and their geometries, presses with.
 template <class ContactCache>
-[[nodiscard]] UnilateralForce press_of(const ContactCache& found) {
-  UnilateralForce press;
+[[nodiscard]] Press press_of(const ContactCache& found) {
+  Press press;
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
     press.depth = std::max(press.depth, -found.geometries[q].gap);
     press.load += found.nodes[q].weight * found.geometries[q].state.normal;
@@ -59,7 +59,7 @@ template <class Depth>
 /// large, nor from none. So it begins where a touch does, and at the accepted unknowns where the prediction has another load than they.
 /// tolerance: of places [m]; gap(): at the accepted unknowns [m]; depth(share): after a share of the way [m].
 template <class Gap, class Depth>
-[[nodiscard]] numerics::IterationStart start_with_contact(const UnilateralForce& accepted, const UnilateralForce& predicted,
+[[nodiscard]] numerics::IterationStart start_with_contact(const Press& accepted, const Press& predicted,
                                                           double tolerance, const Gap& gap, const Depth& depth) {
   constexpr double steady = 8.0;           // most that the load may change by
   const double begun = 0.003 * tolerance;  // depth of a touch that has just begun
@@ -92,7 +92,7 @@ class AcceptedPress {
   template <class FoundAt, class Gap>
   [[nodiscard]] numerics::IterationStart start(const numerics::VectorView& from, const numerics::VectorView& to,
                                                double tolerance, const FoundAt& found_at, const Gap& gap) {
-    const UnilateralForce predicted = press_of(found_at(to));
+    const Press predicted = press_of(found_at(to));
     if (predicted.depth == 0.0) return {};
     if (!inputs_.holds(from)) take(from, found_at);  // a start that was not accepted
     return start_with_contact(
@@ -102,7 +102,7 @@ class AcceptedPress {
 
  private:
   InputMemo inputs_;
-  UnilateralForce press_;
+  Press press_;
 };
 
 }  // namespace snare::coupling

@@ -141,11 +141,11 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
       positive(b.name + ".robot.mass", b.robot->mass);
       positive(b.name + ".robot.delay", b.robot->delay);
       for (const MotionRobot::Measured& m : b.robot->measured)
-        c.require(
-            m.contact >= 0 && m.contact < static_cast<int>(motion.contact_names().size()) &&
-                (base::at(m.contact) < motion.contacts.size() ||
-                 base::at(m.contact) >= motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size()),
-            b.name + ".robot.contact", m.contact, "must be the index of a contact of a body");
+        c.require(m.contact >= 0 && m.contact < static_cast<int>(motion.contact_names().size()) &&
+                      (base::at(m.contact) < motion.contacts.size() ||
+                       base::at(m.contact) >=
+                           motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size()),
+                  b.name + ".robot.contact", m.contact, "must be the index of a contact of a body");
     }
     c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation", b.start.orientation.norm(),
               "must be a unit quaternion");

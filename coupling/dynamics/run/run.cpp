@@ -2,6 +2,10 @@
 
 #include "base/errors.hpp"
 #include "base/index.hpp"
+#include "coupling/dynamics/contact/body_contact_part.hpp"
+#include "coupling/dynamics/contact/contact_group.hpp"
+#include "coupling/dynamics/contact/wire_pair_part.hpp"
+#include "coupling/dynamics/laws/law_part.hpp"
 #include "coupling/dynamics/run/symmetry_plane.hpp"
 
 #include <fmt/format.h>
@@ -47,24 +51,9 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   }
   for (const MotionBody& b : motion.bodies)
     bodies_.emplace_back(b.robot ? loops_.emplace_back(b).moved() : b, motion.gravity, options);
-  for (const MotionContact& c : motion.contacts) {
-    contacts_.emplace_back(c, rods_[static_cast<std::size_t>(c.wire)], bodies_[static_cast<std::size_t>(c.body)]);
-  }
-  for (const PointContactLaw& s : motion.point_contacts) point_contacts_.emplace_back(s, bodies_[static_cast<std::size_t>(s.body)]);
-  for (const WirePair& p : motion.wire_pairs)
-    pairs_.emplace_back(p, rods_[base::at(p.wires[0])], rods_[base::at(p.wires[1])]);
   constraints_.emplace(motion, rods_, bodies_, options);
-  const auto frame = [this](const MotionCarrier& carrier, const multibody::Pose& X_WF) {
-    return constraints_->frame_of(carrier, bodies_, X_WF);
-  };
-  const auto place = [](const Eigen::Vector3d& p) { return multibody::Pose{Eigen::Matrix3d::Identity(), p}; };
-  for (const LawWire& w : motion.law_wires)
-    unilateral_forces_.push_back(&law_wires_.emplace_back(w, frame(w.from, place(w.p_from)), frame(w.to, place(w.p_to)),
-                                                frame(w.shaft.carrier, w.shaft.X_WS)));
-  for (const BodyContact& b : motion.body_contacts)
-    unilateral_forces_.push_back(&body_contacts_.emplace_back(b, frame(b.carrier, b.X_WS), frame(b.other, b.X_WP)));
-  seen_.resize(body_contacts_.size());
-  for (const FrameLoad& l : motion.loads) loads_.emplace_back(l, frame(l.carrier, l.X_WF));
+  add_interactions();
+  for (const FrameLoad& l : motion.loads) loads_.emplace_back(l, constraints_->frame_of(l.carrier, bodies_, l.X_WF));
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   if (system_->size() == 0)
     throw base::InputError({"", 0, "", "", "nothing can move: no wire with mass, no body, no arm"});
@@ -85,27 +74,43 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   ida.newton_share = options.newton_share.value_or(waves ? share_of_rods : share_of_bodies);
   if (!waves) ida.matrix_change = matrix_change_without_waves;
   if (!rods_.empty()) ida.renewals = renewals_of_wires;
-  integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(touching()));
+  integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(interactions_.size()));
   ida_ = std::make_unique<numerics::Ida>(
       *system_, ida,
       numerics::IdaIntegrals{static_cast<int>(integrals_.size()),
                              [this](const DaePoint& at, Eigen::Ref<VectorXd> rates) { integrands(at, rates); }});
   peak_ = PeakForce(options.peak_window);
-  sums_.peak_force.assign(touching(), 0.0);
+  sums_.peak_force.assign(interactions_.size(), 0.0);
   left_out_.assign(rods_.size(), LeftOutMomentum(options.peak_window));
   sums_.left_out.assign(rods_.size(), {});
+}
+
+void MotionRun::add_interactions() {
+  const auto frame = [this](const MotionCarrier& carrier, const multibody::Pose& X_WF) {
+    return constraints_->frame_of(carrier, bodies_, X_WF);
+  };
+  const auto place = [](const Vector3d& p) { return multibody::Pose{Eigen::Matrix3d::Identity(), p}; };
+  const auto add = [this](auto interaction) { interactions_.push_back(std::move(interaction)); };
+  for (const MotionContact& c : motion_.contacts)
+    add(std::make_unique<ContactGroup>(c, rods_[base::at(c.wire)], bodies_[base::at(c.body)]));
+  for (const PointContactLaw& s : motion_.point_contacts) add(std::make_unique<LawPart>(s, bodies_[base::at(s.body)]));
+  for (const WirePair& p : motion_.wire_pairs)
+    add(std::make_unique<WirePairPart>(p, rods_[base::at(p.wires[0])], rods_[base::at(p.wires[1])]));
+  for (const LawWire& w : motion_.law_wires) {
+    auto part = std::make_unique<LawWirePart>(w, frame(w.from, place(w.p_from)), frame(w.to, place(w.p_to)),
+                                              frame(w.shaft.carrier, w.shaft.X_WS));
+    law_wires_.push_back(part.get());
+    add(std::move(part));
+  }
+  for (const BodyContact& b : motion_.body_contacts)
+    add(std::make_unique<BodyContactPart>(b, frame(b.carrier, b.X_WS), frame(b.other, b.X_WP)));
 }
 
 std::vector<numerics::DaePart*> MotionRun::parts() {
   std::vector<numerics::DaePart*> list;
   for (auto& r : rods_) list.push_back(&r);
   for (auto& b : bodies_) list.push_back(&b);
-  for (auto& c : contacts_) {
-    for (ContactPart& p : c.pieces()) list.push_back(&p);
-  }
-  for (auto& s : point_contacts_) list.push_back(&s);
-  for (auto& p : pairs_) list.push_back(&p);
-  for (UnilateralForcePart* p : unilateral_forces_) list.push_back(p);
+  for (auto& i : interactions_) i->append(list);
   for (auto& l : loads_) list.push_back(&l);
   constraints_->append(list);
   return list;
@@ -113,40 +118,17 @@ std::vector<numerics::DaePart*> MotionRun::parts() {
 
 int MotionRun::default_order() const {
   constexpr int a_stable = 2, of_laws = 3, of_bodies = 5;
-  if (!rods_.empty() || std::ranges::any_of(body_contacts_, &BodyContactPart::has_bristle)) return a_stable;
-  return point_contacts_.empty() && unilateral_forces_.empty() ? of_bodies : of_laws;
+  if (!rods_.empty()) return a_stable;
+  if (std::ranges::any_of(interactions_, [](const auto& i) { return i->has_body_bristles(); })) return a_stable;
+  return interactions_.empty() ? of_bodies : of_laws;
 }
 
-// A wire that is inside a shape has no side to which it belongs. Balls of bodies may rest on a shape, but what is pressed into it is thrown out.
+// A wire that is inside a shape has no side to which it belongs. Balls of bodies may rest on a shape, but what is pressed
+// into it is thrown out.
 void MotionRun::require_apart() {
   std::vector<base::InputProblem> problems;
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const MotionContact& c = motion_.contacts[k];
-    const NearestPoint n = contacts_[k].nearest(y_);
-    // The start may touch, up to a small part of the wire's radius.
-    if (!c.law && n.gap < -0.01 * c.wire_radius - options_.position_tolerance)
-      problems.push_back({"", 0, c.name + ".gap", fmt::format("{} at {} m along the wire", n.gap, n.coordinate),
-                          "must be >= 0 m at the start"});
-  }
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const WirePair& p = motion_.wire_pairs[k];
-    const NearestPoints n = pairs_[k].search().nearest(y_);
-    if (n.gap < -0.01 * std::min(p.radii[0], p.radii[1]) - options_.position_tolerance) {
-      problems.push_back({"", 0, p.name + ".gap",
-                          fmt::format("{} at {} m along the one wire and {} m along the other", n.gap, n.coordinates[0],
-                                      n.coordinates[1]),
-                          "must be >= 0 m at the start"});
-    }
-  }
-  for (std::size_t k = 0; k < body_contacts_.size(); ++k) {
-    const BodyContact& b = motion_.body_contacts[k];
-    constexpr double of_radius = 0.1;
-    const double depth = b.radius > 0.0 ? body_contacts_[k].depth(y_) : 0.0;
-    if (depth > of_radius * b.radius) {
-      problems.push_back({"", 0, b.name + ".gap", fmt::format("{:.6g} m", -depth),
-                          fmt::format("must be >= {:.6g} m at the start, a tenth of the radius of what touches",
-                                      -of_radius * b.radius)});
-    }
+  for (const auto& i : interactions_) {
+    if (auto problem = i->overlap(y_, options_.position_tolerance)) problems.push_back(std::move(*problem));
   }
   if (!problems.empty()) throw base::InputError(problems);
 }
@@ -165,17 +147,13 @@ void MotionRun::stay_in_plane() {
   const auto hold = [&held](const std::vector<int>& across) { held.insert(held.end(), across.begin(), across.end()); };
   for (std::size_t i = 0; i < rods_.size(); ++i) hold(rods_[i].restrict_to_plane(planes[i]));
   for (const BodyPart& b : bodies_) hold(b.unknowns_across(*normal));
-  for (ContactGroup& c : contacts_) {
-    for (ContactPart& p : c.pieces()) hold(p.restrict_to_plane(*normal));
-  }
+  for (const auto& i : interactions_) hold(i->restrict_to_plane(*normal));
   system_->hold(std::move(held));
 }
 
 void MotionRun::leave_plane() {
   for (wire::RodPart& r : rods_) r.leave_plane();
-  for (ContactGroup& c : contacts_) {
-    for (ContactPart& p : c.pieces()) p.leave_plane();
-  }
+  for (const auto& i : interactions_) i->leave_plane();
   system_->hold({});
 }
 
@@ -258,11 +236,7 @@ void MotionRun::count_losses() {
 }
 
 void MotionRun::begin() {
-  for (ContactGroup& c : contacts_) {
-    for (ContactPart& p : c.pieces()) p.update_candidates(y_);
-  }
-  for (WirePairPart& p : pairs_) p.update_candidates(y_);
-  for (LawWirePart& w : law_wires_) w.update_candidates(y_);
+  for (const auto& i : interactions_) i->update_candidates(y_);
   MotionSample start;
   const EnergyBalance energy = stored({0.0, y_, rate_}, &start);
   sums_.start_energy = energy.kinetic + energy.strain + energy.potential;
@@ -287,13 +261,9 @@ void MotionRun::resume(const MotionState& from) {
   integrals_ = from.integrals;
   sums_ = from.sums;
   std::span<const double> memory = from.memory;
-  for (ContactGroup& c : contacts_) c.restore_state(memory);
+  for (const auto& i : interactions_) i->restore_touches(memory);
   peak_.restore_state(memory);
   for (LeftOutMomentum& p : left_out_) p.restore_state(memory);
-  for (Seen& s : seen_) {
-    s.closed = numerics::take(memory) != 0.0;
-    s.sticking = numerics::take(memory) != 0.0;
-  }
   lost_ = lost_before_ = numerics::take(memory);
   corrected_ = numerics::take(memory);
   restore_phases(memory);
@@ -319,6 +289,34 @@ void MotionRun::cross_break(double time) {
     restart();
 }
 
+double MotionRun::next_break(double limit) const {
+  double stop = std::min({limit, constraints_->limit(), phases_.limit(time_)});
+  for (const LoadPart& l : loads_) stop = std::min(stop, l.next_break(time_));
+  for (const RobotLoop& l : loops_) stop = std::min(stop, l.next_break(time_));
+  if (phases_.asks_for_readings()) stop = std::min(stop, sensed_.limit(time_));
+  return stop;
+}
+
+MotionRun::Crossed MotionRun::cross_events(double time_before, std::span<const int> found) {
+  Crossed crossed;
+  const DaePoint now{time_, y_, rate_};
+  std::vector<int> sense(interactions_.size(), 0);  // of each event: 1 it begins to press, -1 it ends
+  std::size_t event = 0;
+  for (std::size_t k = 0; k < interactions_.size(); ++k) {
+    const Interaction& interaction = *interactions_[k];
+    if (interaction.has_event()) sense[k] = found[event++];
+    if (sense[k] == 0) continue;
+    crossed.any = true;
+    crossed.jump = crossed.jump || interaction.jumps();
+    const auto kind = sense[k] > 0 ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off;
+    book(k, {.time = time_, .arc = interaction.sample(now).arc, .kind = kind});
+  }
+  for (std::size_t k = 0; k < interactions_.size(); ++k) {
+    for (const MotionEvent& e : interactions_[k]->changes(now, time_before, sense[k] != 0)) book(k, e);
+  }
+  return crossed;
+}
+
 MotionResult MotionRun::run_until(double limit) {
   const auto clock = std::chrono::steady_clock::now();
   numerics::IdaReport report;
@@ -329,10 +327,7 @@ MotionResult MotionRun::run_until(double limit) {
   sense_forces(time_);
   bool stopped = write_until(time_);
   while (!stopped && !broken_ && !over_ && !reached(time_, limit)) {
-    double stop = std::min({limit, constraints_->limit(), phases_.limit(time_)});
-    for (const LoadPart& l : loads_) stop = std::min(stop, l.next_break(time_));
-    for (const RobotLoop& l : loops_) stop = std::min(stop, l.next_break(time_));
-    if (phases_.asks_for_readings()) stop = std::min(stop, sensed_.limit(time_));
+    const double stop = next_break(limit);
     if (reached(time_, stop)) {
       cross_break(stop);
       continue;
@@ -378,26 +373,10 @@ MotionResult MotionRun::run_until(double limit) {
       report.message = *constraints_->stuck();
       break;
     }
-    std::size_t event = 0;
-    bool touch_or_lift = false;
-    for (std::size_t k = 0; k < point_contacts_.size(); ++k, ++event) {
-      if (behind || found[event] == 0) continue;
-      changed = true;
-      const bool touch = found[event] > 0;
-      sums_.events.push_back({time_, static_cast<int>(contacts_.size() + k), 0, 0.0,
-                              touch ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
-    }
-    for (std::size_t k = 0; k < unilateral_forces_.size(); ++k, ++event) {
-      if (behind || found[event] == 0) continue;
-      changed = changed || unilateral_forces_[k]->jumps();
-      touch_or_lift = true;
-      sums_.events.push_back({time_, static_cast<int>(first_unilateral_force() + k), 0, unilateral_forces_[k]->sample(y_).arc,
-                              found[event] > 0 ? MotionEvent::Kind::touch : MotionEvent::Kind::lift_off, 0.0});
-    }
-    if (!behind)
-      watch_body_contacts(before, std::span(found).subspan(event - body_contacts_.size(), body_contacts_.size()));
+    const Crossed crossed = behind ? Crossed{} : cross_events(before, found);
+    changed = changed || crossed.jump;
     for (LoadPart& l : loads_) changed = l.begin_interval(time_) || changed;
-    for (RobotLoop& l : loops_) changed = l.begin_interval(time_, changed || phase || touch_or_lift) || changed;
+    for (RobotLoop& l : loops_) changed = l.begin_interval(time_, changed || phase || crossed.any) || changed;
     if (phase) {
       over_ = begin_phases();
     } else if (changed) {
@@ -442,10 +421,9 @@ MotionResult MotionRun::result(numerics::IdaReport report) {
   r.statistics = sums_.statistics;
   r.wall_seconds = sums_.wall_seconds;
   std::vector<double> memory;
-  for (const ContactGroup& c : contacts_) c.save_state(memory);
+  for (const auto& i : interactions_) i->save_touches(memory);
   peak_.save_state(memory);
   for (const LeftOutMomentum& p : left_out_) p.save_state(memory);
-  for (const Seen& s : seen_) memory.insert(memory.end(), {s.closed ? 1.0 : 0.0, s.sticking ? 1.0 : 0.0});
   memory.insert(memory.end(), {lost_, corrected_});
   phases_.save_state(memory);
   sensed_.save_state(memory);

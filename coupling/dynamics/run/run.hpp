@@ -1,13 +1,10 @@
 #pragma once
 
-#include "coupling/dynamics/contact/body_contact_part.hpp"
-#include "coupling/dynamics/contact/contact_group.hpp"
-#include "coupling/dynamics/contact/wire_pair_part.hpp"
+#include "coupling/dynamics/contact/interaction.hpp"
 #include "coupling/dynamics/joints/body_part.hpp"
 #include "coupling/dynamics/joints/constraint_set.hpp"
 #include "coupling/dynamics/joints/load_part.hpp"
 #include "coupling/dynamics/joints/robot_loop.hpp"
-#include "coupling/dynamics/laws/law_part.hpp"
 #include "coupling/dynamics/laws/law_wire_part.hpp"
 #include "coupling/dynamics/model/model.hpp"
 #include "coupling/dynamics/model/modes.hpp"
@@ -32,18 +29,6 @@
 #include <vector>
 
 namespace snare::coupling {
-
-/// Where the integrals along the run stand: powers [W], sums of all outer forces [N] and moments about the origin [N m] on
-/// wires and free bodies, the force of everything that presses on the wire or the first of two [N], and behind them the normal force
-/// of each. What laws lose has kinks, which the integrator's formula does not see: that sum is LossSum's.
-namespace integral {
-constexpr Eigen::Index dissipated = 0;
-constexpr Eigen::Index work = 1;
-constexpr Eigen::Index outer = 2;
-constexpr Eigen::Index outer_moment = 5;
-constexpr Eigen::Index laws = 8;  ///< what laws between bodies and in place of wires lose, no part of `dissipated`
-constexpr Eigen::Index contacts = 9;
-}  // namespace integral
 
 /// Times that differ by less are the same: the integrator cannot step from one to the other [s].
 [[nodiscard]] inline double time_resolution(double time) {
@@ -70,6 +55,7 @@ class MotionRun {
   [[nodiscard]] SmallMotions small_motions();
 
  private:
+  void add_interactions();
   [[nodiscard]] std::vector<numerics::DaePart*> parts();
   [[nodiscard]] int default_order() const;  // of the integrator                                       theory.md (M.2)
   void require_apart();
@@ -106,33 +92,31 @@ class MotionRun {
 
   // Balances (balance.cpp).
   [[nodiscard]] EnergyBalance stored(const numerics::DaePoint& at, MotionSample* into);
-  void add_reactions(std::size_t contact, const ContactPart::Sums& sums, const numerics::DaePoint& at,
-                     Eigen::Ref<Eigen::VectorXd> rates) const;
-  void add_pair(std::size_t pair, const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
   void integrands(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates);
+  void observe_interactions(double time_before, const Eigen::VectorXd& before);
   void record_extremes(double time_before, const Eigen::VectorXd& before);
   void watch_law_wire(std::size_t k, double tension);
   /// Updates the total dissipation, and removes and counts its decreases.
   void count_losses();
   /// Power that laws between bodies and in place of wires lose [W], >= 0.
   [[nodiscard]] double law_loss(const numerics::DaePoint& at) const;
-  /// Notes touches that began at a start, stick and slip of bodies that touch, in the step from a time [s]. found: events of the integrator,
-  /// those of the contacts of bodies.
-  void watch_body_contacts(double time_before, std::span<const int> found);
+  /// Books what has happened to an interaction.
+  void book(std::size_t interaction, MotionEvent event);
+  /// What events of interactions ask for.
+  struct Crossed {
+    bool any = false, jump = false;  // a jump needs a restart
+  };
+  /// Books touches, lift-offs, and what else the interactions tell of the step from a time [s]. found: events of the integrator.
+  Crossed cross_events(double time_before, std::span<const int> found);
+  /// The first time, up to a limit, at which what acts has a break that is known ahead [s].
+  [[nodiscard]] double next_break(double limit) const;
   [[nodiscard]] double longest_step() const;
   /// Tells the robots' loops what presses on their bodies, in the step from a time [s] on or, without one, now.
   void sense_forces(double from);
-  /// Number of all that presses.
-  [[nodiscard]] std::size_t touching() const {
-    return contacts_.size() + point_contacts_.size() + pairs_.size() + unilateral_forces_.size();
-  }
-  /// Index of the first press among all that does.
-  [[nodiscard]] std::size_t first_unilateral_force() const { return touching() - unilateral_forces_.size(); }
   /// At the last state, or within the step before it.
   [[nodiscard]] MotionSample sample(const numerics::DaePoint& at, const Eigen::VectorXd& integrals);
-  /// The sample of a contact, by its index among all, with the forces that are recorded.
-  [[nodiscard]] ContactSample recorded(ContactSample sample, double time, std::size_t contact,
-                                       const ContactTouches& touches) const;
+  /// The sample of an interaction, with the forces that are recorded where it has touched for some steps.
+  [[nodiscard]] ContactSample recorded(std::size_t interaction, const numerics::DaePoint& at) const;
 
   const Motion& motion_;
   MotionOptions options_;
@@ -140,18 +124,9 @@ class MotionRun {
   std::deque<wire::RodPart> rods_;
   std::deque<RobotLoop> loops_;  // of bodies that robots move: before these
   std::deque<BodyPart> bodies_;
-  std::deque<ContactGroup> contacts_;
-  std::deque<LawPart> point_contacts_;
-  std::deque<WirePairPart> pairs_;
   std::optional<ConstraintSet> constraints_;
-  std::deque<LawWirePart> law_wires_;
-  std::deque<BodyContactPart> body_contacts_;
-  std::vector<UnilateralForcePart*> unilateral_forces_;  // both of them
-  /// How a contact of bodies was at the last accepted step.
-  struct Seen {
-    bool closed = false, sticking = false;
-  };
-  std::vector<Seen> seen_;  // by body_contacts_
+  std::vector<std::unique_ptr<Interaction>> interactions_;  // in the order of Motion::contact_names
+  std::vector<LawWirePart*> law_wires_;                     // those of them that stand for wires
   std::deque<LoadPart> loads_;
   PhaseWatch phases_;
   SensedReadings sensed_;

@@ -12,7 +12,7 @@ using base::at;
 using Eigen::Vector3d;
 
 double MotionRun::tension(int wire) {
-  if (at(wire) >= rods_.size()) return law_wires_[at(wire) - rods_.size()].pressing(y_).tension;
+  if (at(wire) >= rods_.size()) return law_wires_[at(wire) - rods_.size()]->pressing(y_).tension;
   const wire::RodPart& rod = rods_[at(wire)];
   std::optional<std::array<Vector3d, 2>> at_start;
   std::array<Vector3d, 2> forces;
@@ -30,14 +30,8 @@ double MotionRun::tension(int wire) {
 
 double MotionRun::signal(const MotionSignal& s) {
   switch (s.kind) {
-    case MotionSignal::Kind::contact_force: {
-      const std::size_t k = at(s.index);
-      if (k < contacts_.size()) return contacts_[k].sums(y_).normal;
-      if (k < contacts_.size() + point_contacts_.size())
-        return point_contacts_[k - contacts_.size()].sample({time_, y_, rate_}).normal_force;
-      if (k >= first_unilateral_force()) return unilateral_forces_[k - first_unilateral_force()]->pressing(y_).sample.normal_force;
-      return pairs_[k - contacts_.size() - point_contacts_.size()].sums(y_).normal;
-    }
+    case MotionSignal::Kind::contact_force:
+      return interactions_[at(s.index)]->load({time_, y_, rate_}).normal;
     case MotionSignal::Kind::wire_tension:
       return tension(s.index);
     case MotionSignal::Kind::joint_torque:
@@ -65,7 +59,8 @@ PhaseWatch::Kept MotionRun::kept() const {
 }
 
 void MotionRun::sense() {
-  if (phases_.asks_for_readings()) sensed_.cross_break(time_, [this] { return sample({time_, y_, rate_}, integrals_); });
+  if (phases_.asks_for_readings())
+    sensed_.cross_break(time_, [this] { return sample({time_, y_, rate_}, integrals_); });
 }
 
 // The integrator has gone on behind the beginning of the phase: its polynomial gives the state there. It has not gone on behind a reading.

@@ -43,11 +43,7 @@ void MotionRun::make_rates() {
   }
   constraints_->solve_rates(time_, y_, rows, rate_);
   constraints_->set_multipliers(constraints_->hold_rates(y_, rate_), y_);
-  for (const ContactGroup& c : contacts_) {
-    for (const ContactPart& p : c.pieces()) p.set_bristle_rates(y_, rate_);
-  }
-  for (WirePairPart& p : pairs_) p.set_bristle_rates(y_, rate_);
-  for (const BodyContactPart& b : body_contacts_) b.set_bristle_rates(y_, rate_);
+  for (const auto& i : interactions_) i->set_bristle_rates(y_, rate_);
 }
 
 void MotionRun::restart() {

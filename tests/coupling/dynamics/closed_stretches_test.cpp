@@ -1,4 +1,4 @@
-#include "coupling/dynamics/contact/closed_stretches.hpp"
+#include "coupling/dynamics/contact/contact_intervals.hpp"
 
 #include "coupling/dynamics/contact/contact_integral.hpp"
 

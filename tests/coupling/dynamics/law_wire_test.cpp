@@ -85,7 +85,7 @@ TEST(LawWire, RingHasTheClosedForm) {
     const std::vector<multibody::Wrench> wrenches = part.wrenches(y);
     EXPECT_NEAR(w.p_to.cross(wrenches[1].force).z(), -tension * r, 1e-9 * tension) << degrees;
     EXPECT_NEAR(w.p_from.cross(wrenches[0].force).z(), tension * r, 1e-9 * tension) << degrees;
-    EXPECT_NEAR(part.sample(y).normal_force,
+    EXPECT_NEAR(part.load({0.0, y, y}).normal,
                 2.0 * tension * std::sin(0.5 * (theta - touch)) * (theta - touch > std::numbers::pi ? -1.0 : 1.0),
                 1e-9 * tension)
         << degrees;
@@ -140,7 +140,7 @@ TEST(LawWire, MountThrowsTheShaftBack) {
   const Vector3d inside(0.1 - 0.9 * r, 0.0, 0.0);
   EXPECT_NEAR(wire.part.wrenches(wire.at(inside)).at(2).force.x(), -k * 0.1 * r, 1e-9 * k * r);
   EXPECT_NEAR(wire.part.wrenches(wire.at(inside)).at(0).force.x(), k * 0.1 * r, 1e-9 * k * r);
-  EXPECT_NEAR(wire.part.sample(wire.at(inside)).normal_force, k * 0.1 * r, 1e-9 * k * r);
+  EXPECT_NEAR(wire.part.load({0.0, wire.at(inside), wire.at(inside)}).normal, k * 0.1 * r, 1e-9 * k * r);
 }
 
 TEST(LawWire, JacobianMatchesDifferences) {
@@ -294,7 +294,7 @@ TEST(LawWire, RodIsMetByItsAngle) {
   const double across = k * deep * (x(0.02, -0.004 + h) - x(0.02, -0.004 - h)) / (2.0 * h);
   const double along = k * deep * (x(0.02 + h, -0.004) - x(0.02 - h, -0.004)) / (2.0 * h);
   EXPECT_NEAR(across, k * deep, 3e-3 * k * deep);  // the turn and r/rho change the lever by (0.05)^2
-  EXPECT_NEAR(part.sample(y).normal_force, across, 1e-7 * across);
+  EXPECT_NEAR(part.load({0.0, y, y}).normal, across, 1e-7 * across);
   EXPECT_NEAR(part.wrenches(y)[2].force.y(), -across, 1e-7 * across);
   EXPECT_NEAR(part.wrenches(y)[2].force.x(), -along, 1e-7 * across);
   const Vector3d on_mounts = part.wrenches(y)[0].force + part.wrenches(y)[1].force;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double tolerance = 3e-7;  // of places [m]
 
-numerics::IterationStart start(const UnilateralForce& accepted, const UnilateralForce& predicted, double gap = 1e-6) {
+numerics::IterationStart start(const Press& accepted, const Press& predicted, double gap = 1e-6) {
   // What flies straight: the depth grows from none to that of the prediction.
   const auto depth = [=](double share) { return std::max(0.0, share * (predicted.depth + gap) - gap); };
   return start_with_contact(
@@ -48,7 +48,7 @@ TEST(StartWithContact, IsWhereATouchBegins) {
 
 // What has been touched to less than that begins there, too, whatever it presses with.
 TEST(StartWithContact, IsThereFromATouchOfRoundOff) {
-  for (const UnilateralForce& accepted : {UnilateralForce{}, UnilateralForce{1e-17, 0.0}, UnilateralForce{1e-13, 1e-9}}) {
+  for (const Press& accepted : {Press{}, Press{1e-17, 0.0}, Press{1e-13, 1e-9}}) {
     const numerics::IterationStart s = start_with_contact(
         accepted, {5e-8, 1e3}, tolerance, [] { return -1e-17; }, [](double share) { return share * 5e-8; });
     EXPECT_FALSE(s.out_of_reach);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "coupling/contact/contact_law.hpp"
+#include "coupling/dynamics/contact/interaction.hpp"
 #include "coupling/dynamics/joints/frame_forces.hpp"
 #include "coupling/dynamics/model/result.hpp"
 
@@ -9,7 +10,7 @@
 namespace snare::coupling {
 
 /// Forces between frames that press: an event where they begin and end.
-class UnilateralForcePart : public FrameForces {
+class UnilateralForcePart : public FrameForces, public Interaction {
  public:
   using FrameForces::FrameForces;
 
@@ -20,8 +21,6 @@ class UnilateralForcePart : public FrameForces {
   [[nodiscard]] virtual double depth(const numerics::VectorView& y) const = 0;
   /// A number with the sign of the depth [m].
   [[nodiscard]] virtual double touches(const numerics::VectorView& y) const { return depth(y); }
-  /// Whether the force jumps there, as a dashpot's does: the integration begins anew.
-  [[nodiscard]] virtual bool jumps() const = 0;
   /// What can be said of it at one place, from y in SI units.
   struct Pressing {
     ContactSample sample;  ///< but for the gap; its force is that on the first of those that press on each other
@@ -29,13 +28,33 @@ class UnilateralForcePart : public FrameForces {
     double tension = 0.0;  ///< of a wire [N]
   };
   [[nodiscard]] virtual Pressing pressing(const numerics::VectorView& y) const = 0;
-  /// With the gap, y in SI units.
-  [[nodiscard]] ContactSample sample(const numerics::VectorView& y) const {
-    ContactSample s = pressing(y).sample;
-    s.gap = -depth(y);
+  [[nodiscard]] Work work(const numerics::VectorView& y) const final { return pressing(y).work; }
+
+  void append(std::vector<numerics::DaePart*>& parts) final { parts.push_back(this); }
+  [[nodiscard]] double energy(const numerics::DaePoint& at) const final { return work(at.y).power.energy; }
+  [[nodiscard]] double law_loss(const numerics::DaePoint& at) const final { return work(at.y).power.lost; }
+  void add_rates(const numerics::DaePoint& at, const IntegralRates& rates) const final {
+    const auto [s, work, tension] = pressing(at.y);
+    Eigen::Ref<Eigen::VectorXd> all = rates.all;
+    all.segment<3>(rates.force) = s.force;
+    all[rates.normal] = s.normal_force;
+    all[integral::laws] += work.power.lost;
+    rates.constraints.add_forces(*this, work.wrenches, at, rates.held);
+  }
+  [[nodiscard]] Load load(const numerics::DaePoint& at) const final {
+    const ContactSample s = pressing(at.y).sample;
+    return {s.force, s.normal_force};
+  }
+  [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const final {
+    ContactSample s = pressing(at.y).sample;
+    s.gap = -depth(at.y);
     return s;
   }
-  [[nodiscard]] Work work(const numerics::VectorView& y) const final { return pressing(y).work; }
+  [[nodiscard]] Observed observe(const numerics::DaePoint& now, double /*time_before*/,
+                                 const Eigen::VectorXd& /*before*/) final {
+    const Pressing p = pressing(now.y);
+    return {.normal = p.sample.normal_force, .tension = p.tension, .events = {}};
+  }
 };
 
 /// Whether a law's force jumps at a touch: at 1e-12 m of depth a rate of one [m/s] more than doubles it.

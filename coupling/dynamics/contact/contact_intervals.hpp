@@ -27,7 +27,7 @@ struct ContactInterval {
   double from = 0.0, to = 0.0;  ///< u, from 0 to 1 [-]
   GapPlace deepest;
   std::vector<GapMaximum> crests;  ///< in their order
-  double behind = 0.0;           ///< the least gap behind the last of them [m]
+  double behind = 0.0;             ///< the least gap behind the last of them [m]
 };
 
 /// Where the gap along an element is negative.                                                theory.md (G.7)
