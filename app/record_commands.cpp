@@ -20,25 +20,25 @@ namespace snare::app {
 
 namespace {
 
-using identification::MotionStage;
-using identification::MotionTrace;
 using identification::RecordSet;
+using identification::RecordStage;
+using identification::RecordTrace;
 
-void write_record_curves(const std::filesystem::path& file, const RecordSet& set, const MotionTrace& trace) {
+void write_record_curves(const std::filesystem::path& file, const RecordSet& set, const RecordTrace& trace) {
   results::CsvSink csv(file);
   results::give_record_curves(csv, set, trace);
   csv.commit();
 }
 
-using Write = void (*)(const RecordSet& set, const MotionTrace& trace, const CommonOptions& options);
+using Write = void (*)(const RecordSet& set, const RecordTrace& trace, const CommonOptions& options);
 
-void write_trace(const RecordSet& set, const MotionTrace& trace, const CommonOptions& options) {
+void write_trace(const RecordSet& set, const RecordTrace& trace, const CommonOptions& options) {
   write_record_curves(options.out / "curves.csv", set, trace);
   base::write_text(options.out / "report.html", record_report_html(set, trace));
   write_result(options, "trace.json", results::record_trace_json(set, trace));
 }
 
-void write_fit(const RecordSet& set, const MotionTrace& trace, const CommonOptions& options) {
+void write_fit(const RecordSet& set, const RecordTrace& trace, const CommonOptions& options) {
   write_record_curves(options.out / "curves.csv", set, trace);
   write_result(options, "fit.json", results::record_fit_json(set, trace));
 }
@@ -46,24 +46,24 @@ void write_fit(const RecordSet& set, const MotionTrace& trace, const CommonOptio
 /// What of a trace is whole, for an interruption that comes while the next part is under way.
 struct Part {
   std::mutex guard;
-  std::optional<MotionTrace> trace;
+  std::optional<RecordTrace> trace;
 };
 
-std::string kept_words(const MotionTrace& trace) {
+std::string kept_words(const RecordTrace& trace) {
   return fmt::format("what was finished is kept and marked as a part: the base fit{}",
                      trace.selected.empty() ? "" : fmt::format(" and {} effects", trace.selected.size()));
 }
 
-MotionTrace run(const RecordSet& set, bool effects, const CommonOptions& options, const char* schema, Write write,
+RecordTrace run(const RecordSet& set, bool effects, const CommonOptions& options, const char* schema, Write write,
                 Console& console) {
-  identification::MotionTraceOptions tracing;
+  identification::RecordTraceOptions tracing;
   tracing.effects = effects;
   tracing.progress = [&console](const std::string& stage) {
     console.progress(stage);
     return !interrupted();
   };
   Part part;
-  tracing.reached = [&part](const MotionTrace& reached) {
+  tracing.reached = [&part](const RecordTrace& reached) {
     const std::scoped_lock lock(part.guard);
     part.trace = reached;
   };
@@ -78,7 +78,7 @@ MotionTrace run(const RecordSet& set, bool effects, const CommonOptions& options
         return kept_words(*part.trace);
       },
       "");
-  MotionTrace trace = identification::trace_records(set, tracing);
+  RecordTrace trace = identification::trace_records(set, tracing);
   console.end_progress();
   begin_writing();
   if (trace.report.usable()) {
@@ -95,7 +95,7 @@ MotionTrace run(const RecordSet& set, bool effects, const CommonOptions& options
   return trace;
 }
 
-void tell(const MotionStage& stage, const char* name, Console& console) {
+void tell(const RecordStage& stage, const char* name, Console& console) {
   for (const identification::ChannelError& e : stage.errors)
     console.say(fmt::format("{}: {} within {:.4g} {} ({:.2f} % of the readings)", name, e.sensor, e.rmse, e.unit,
                             100.0 * e.relative));
@@ -103,21 +103,21 @@ void tell(const MotionStage& stage, const char* name, Console& console) {
     console.say(fmt::format("{}, held out: {} within {:.4g} {}", name, e.sensor, e.rmse, e.unit));
 }
 
-void tell_numbers(const MotionStage& stage, Console& console) {
+void tell_numbers(const RecordStage& stage, Console& console) {
   for (const identification::TracedNumber& n : stage.numbers) {
     console.say(fmt::format("  {} = {:.6g}{}{}  {}", n.key, n.value, n.unit.empty() ? "" : " ", n.unit,
                             identification::interval_words(n.lower, n.upper, n.identified, n.bound)));
   }
 }
 
-void tell_profiles(const MotionTrace& trace, Console& console) {
+void tell_profiles(const RecordTrace& trace, Console& console) {
   for (const identification::Profile& p : trace.profiles)
     console.say(fmt::format(
         "  {} by its profile: {} to {}{}{}", p.key, p.lower.limit ? fmt::format("{:.5g}", *p.lower.limit) : "no limit",
         p.upper.limit ? fmt::format("{:.5g}", *p.upper.limit) : "no limit", p.unit.empty() ? "" : " ", p.unit));
 }
 
-ExitStatus status_of(const MotionTrace& trace) {
+ExitStatus status_of(const RecordTrace& trace) {
   return trace.report.usable() && !trace.interrupted ? ExitStatus::done : ExitStatus::solver_stopped;
 }
 
@@ -125,9 +125,9 @@ ExitStatus status_of(const MotionTrace& trace) {
 
 ExitStatus fit_records(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const RecordSet set = identification::read_records(file, overrides_of(options));
-  static_cast<void>(identification::MotionModel(set));  // what is wrong is told before a folder is made
+  static_cast<void>(identification::RecordModel(set));  // what is wrong is told before a folder is made
   const ResultFolder folder(options, {"curves.csv", "fit.json"});
-  const MotionTrace trace = run(set, false, options, "snare-fit/1", write_fit, console);
+  const RecordTrace trace = run(set, false, options, "snare-fit/1", write_fit, console);
   if (trace.report.usable() && !options.json) {
     tell(trace.declared, "declared", console);
     tell(trace.base, "fitted", console);
@@ -141,9 +141,9 @@ ExitStatus fit_records(const std::filesystem::path& file, const CommonOptions& o
 
 ExitStatus trace_record_file(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const RecordSet set = identification::read_records(file, overrides_of(options));
-  static_cast<void>(identification::MotionModel(set));
+  static_cast<void>(identification::RecordModel(set));
   const ResultFolder folder(options, {"curves.csv", "trace.json", "report.html"});
-  const MotionTrace trace = run(set, true, options, "snare-trace/1", write_trace, console);
+  const RecordTrace trace = run(set, true, options, "snare-trace/1", write_trace, console);
   if (trace.report.usable() && !options.json) {
     console.say(record_verdict(trace));
     tell(trace.declared, "declared", console);

@@ -235,14 +235,14 @@ FigureResult figure_12(Runs& runs) {
 /// The shipped flights with the numbers fitted to the first.
 struct Flights {
   identification::RecordSet set;
-  identification::MotionTrace trace;
+  identification::RecordTrace trace;
 };
 
 const Flights& flights(Runs& runs) {
   return runs.once<Flights>("fit of three numbers to the first flight", [&runs] {
     Flights result{identification::read_records(runs.data() / "records/flight.toml"), {}};
     result.set.families.clear();
-    identification::MotionTraceOptions options;
+    identification::RecordTraceOptions options;
     options.effects = false;
     options.progress = [&runs](const std::string& stage) {
       runs.watch().say("honda, fit of a flight: " + stage);

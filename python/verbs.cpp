@@ -119,14 +119,14 @@ py::tuple traced(const Path& file, const Pairs& set, int threads, const py::obje
 /// The same of records in time.
 py::tuple traced_records(const Path& file, const Pairs& set, int threads, const py::object& progress, bool effects) {
   struct Traced {
-    identification::MotionTrace trace;
+    identification::RecordTrace trace;
     json document;
   };
   const auto records =
       std::make_shared<const identification::RecordSet>(identification::read_records(file, overrides_of(set)));
   const auto result = made(
       [records, effects](const results::Watch& watch) {
-        identification::MotionTraceOptions watched;
+        identification::RecordTraceOptions watched;
         watched.effects = effects;
         watched.progress = [&watch](const std::string& stage) {
           watch.say(stage);
@@ -140,7 +140,7 @@ py::tuple traced_records(const Path& file, const Pairs& set, int threads, const 
         return one;
       },
       threads, progress);
-  const identification::MotionTrace& trace = result->trace;
+  const identification::RecordTrace& trace = result->trace;
   if (!trace.report.usable()) return py::make_tuple(py::none(), trace.report.message);
   ColumnSink curves;
   results::give_record_curves(curves, *records, trace);

@@ -90,10 +90,10 @@ CaseEnd trace(const identification::Experiment& experiment, bool whole, const St
 
 CaseEnd trace_records(const identification::RecordSet& set, bool whole, const Stop& stop, json& result,
                       TableSink* history) {
-  identification::MotionTraceOptions options;
+  identification::RecordTraceOptions options;
   options.effects = whole;
   options.progress = [&](const std::string&) { return !stop(); };
-  const identification::MotionTrace traced = identification::trace_records(set, options);
+  const identification::RecordTrace traced = identification::trace_records(set, options);
   if (!traced.report.usable()) return ending(false, traced.report.termination, traced.report.message);
   if (traced.interrupted) return {Status::stopped, "interrupted"};
   if (history != nullptr) give_record_curves(*history, set, traced);

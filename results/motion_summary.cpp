@@ -121,13 +121,14 @@ json listed_contacts_json(const FinishedMotion& run) {
     list.push_back(listed_contact_json(
         run, k, {{"body", motion.bodies[at(c.body)].name}, {"wire", motion.wires[at(c.wire)].name}}));
   }
-  const std::size_t first = motion.contacts.size() + motion.point_contacts.size();
+  const std::size_t first = motion.first_contact(coupling::ContactKind::wire_pair);
   for (std::size_t k = 0; k < motion.wire_pairs.size(); ++k) {
     const std::array<int, 2>& wires = motion.wire_pairs[k].wires;
     list.push_back(listed_contact_json(
         run, first + k, {{"wire", motion.wires[at(wires[0])].name}, {"other_wire", motion.wires[at(wires[1])].name}}));
   }
-  const std::size_t laws = first + motion.wire_pairs.size(), bodies = laws + motion.law_wires.size();
+  const std::size_t laws = motion.first_contact(coupling::ContactKind::law_wire);
+  const std::size_t bodies = motion.first_contact(coupling::ContactKind::bodies);
   for (std::size_t k = 0; k < motion.law_wires.size(); ++k)
     list.push_back(listed_contact_json(run, laws + k, {{"wire", motion.law_wires[k].name}}));
   for (std::size_t k = 0; k < motion.body_contacts.size(); ++k)
@@ -149,11 +150,10 @@ std::optional<double> first_touch(const FinishedMotion& run, std::size_t wire) {
   for (std::size_t k = 0; k < motion.wire_pairs.size(); ++k) {
     const std::array<int, 2>& wires = motion.wire_pairs[k].wires;
     if (at(wires[0]) == wire || at(wires[1]) == wire)
-      consider(motion.contacts.size() + motion.point_contacts.size() + k);
+      consider(motion.first_contact(coupling::ContactKind::wire_pair) + k);
   }
   if (wire >= motion.wires.size())
-    consider(motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size() + wire -
-             motion.wires.size());
+    consider(motion.first_contact(coupling::ContactKind::law_wire) + wire - motion.wires.size());
   return first;
 }
 

@@ -15,16 +15,16 @@ namespace snare::results {
 namespace {
 
 using identification::ChannelError;
-using identification::MotionCandidate;
-using identification::MotionStage;
-using identification::MotionTrace;
+using identification::RecordCandidate;
 using identification::RecordSet;
+using identification::RecordStage;
+using identification::RecordTrace;
 using identification::TracedNumber;
 using nlohmann::json;
 using results::finite;
 
 /// "rmse_N": with the unit of the fitted channels, where there is one; else over their scales.
-std::string with_unit(const char* name, const MotionTrace& trace) {
+std::string with_unit(const char* name, const RecordTrace& trace) {
   std::string unit;
   int count = 0;
   for (const ChannelError& e : trace.base.errors) {
@@ -73,7 +73,7 @@ json open_json(const std::vector<identification::OpenNumbers>& open) {
   return result;
 }
 
-json stage_json(const MotionTrace& trace, const MotionStage& stage) {
+json stage_json(const RecordTrace& trace, const RecordStage& stage) {
   json numbers = json::object();
   for (const TracedNumber& n : stage.numbers) numbers[n.key] = number_json(n);
   return {{with_unit("rmse", trace), finite(stage.rmse)}, {"nrmse", finite(stage.nrmse)},
@@ -95,7 +95,7 @@ const char* end_name(identification::ProfileEnd end) {
   return "not_simulated";
 }
 
-json profiles_json(const MotionTrace& trace) {
+json profiles_json(const RecordTrace& trace) {
   json all = json::object();
   for (const identification::Profile& p : trace.profiles) {
     json points = json::array();
@@ -114,7 +114,7 @@ json profiles_json(const MotionTrace& trace) {
   return all;
 }
 
-json families_json(const MotionTrace& trace) {
+json families_json(const RecordTrace& trace) {
   json all = json::array();
   for (const identification::ModelFamily& f : trace.families) {
     json numbers = json::object();
@@ -128,8 +128,8 @@ json families_json(const MotionTrace& trace) {
   return all;
 }
 
-json candidate_json(const MotionTrace& trace, const MotionCandidate& c) {
-  const identification::MotionEffect& effect = trace.effects[c.score.effect];
+json candidate_json(const RecordTrace& trace, const RecordCandidate& c) {
+  const identification::RecordEffect& effect = trace.effects[c.score.effect];
   json value = json::object();
   for (const TracedNumber& n : c.numbers) value[n.key] = finite(n.value);
   return {{"effect", effect.name},
@@ -150,7 +150,7 @@ json candidate_json(const MotionTrace& trace, const MotionCandidate& c) {
           {"class", c.class_index}};
 }
 
-json head(const RecordSet& set, const MotionTrace& trace, const char* schema) {
+json head(const RecordSet& set, const RecordTrace& trace, const char* schema) {
   return {{"schema", schema},
           {"interrupted", trace.interrupted},
           {"title", set.title},
@@ -166,7 +166,7 @@ json head(const RecordSet& set, const MotionTrace& trace, const char* schema) {
            {{"all", trace.simulations}, {"base_fit", trace.fit_simulations}, {"iterations", trace.fit_iterations}}}};
 }
 
-json tests_json(const MotionTrace& trace) {
+json tests_json(const RecordTrace& trace) {
   return {{"runs_p", finite(trace.runs)},
           {"ljung_box_p", finite(trace.ljung_box)},
           {"lack_of_fit_p", finite(trace.lack_of_fit)}};
@@ -174,16 +174,16 @@ json tests_json(const MotionTrace& trace) {
 
 }  // namespace
 
-json record_trace_json(const RecordSet& set, const MotionTrace& trace) {
+json record_trace_json(const RecordSet& set, const RecordTrace& trace) {
   json result = head(set, trace, "snare-trace/1");
   result["base"] = stage_json(trace, trace.base);
   result["residual"] = {{"significant", trace.significant}, {"tests", tests_json(trace)}};
   result["candidates"] = json::array();
   result["classes"] = json::array();
   result["rounds"] = json::array();
-  for (const identification::MotionRound& round : trace.rounds) {
+  for (const identification::RecordRound& round : trace.rounds) {
     json candidates = json::array();
-    for (const MotionCandidate& c : round.candidates) candidates.push_back(candidate_json(trace, c));
+    for (const RecordCandidate& c : round.candidates) candidates.push_back(candidate_json(trace, c));
     if (result["rounds"].empty()) {
       result["candidates"] = candidates;
       result["classes"] = round.classes;
@@ -225,7 +225,7 @@ json record_trace_json(const RecordSet& set, const MotionTrace& trace) {
   return result;
 }
 
-json record_fit_json(const RecordSet& set, const MotionTrace& trace) {
+json record_fit_json(const RecordSet& set, const RecordTrace& trace) {
   json result = head(set, trace, "snare-fit/1");
   result["fit"] = stage_json(trace, trace.base);
   result["residual"] = {{"acceptable", !trace.significant}, {"tests", tests_json(trace)}};
@@ -233,15 +233,15 @@ json record_fit_json(const RecordSet& set, const MotionTrace& trace) {
   return result;
 }
 
-void give_record_curves(TableSink& sink, const RecordSet& set, const MotionTrace& trace) {
+void give_record_curves(TableSink& sink, const RecordSet& set, const RecordTrace& trace) {
   sink.begin({"record", "sensor", "unit", "time_s", "measured", "declared", "base", "final"});
   for (std::size_t r = 0; r < set.records.size(); ++r) {
-    const identification::MotionRecord& record = set.records[r];
+    const identification::Record& record = set.records[r];
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
       std::string unit;
       for (const identification::ChannelError& e : trace.base.errors)
         if (e.sensor == record.channels[c].sensor) unit = e.unit;
-      const auto cell = [&](const identification::MotionStage& stage, Eigen::Index i) -> base::CsvCell {
+      const auto cell = [&](const identification::RecordStage& stage, Eigen::Index i) -> base::CsvCell {
         if (r >= stage.predictions.size() || stage.predictions[r].channels.empty()) return std::monostate{};
         return stage.predictions[r].channels[c][i];
       };

@@ -187,7 +187,7 @@ std::vector<std::string> motion_warnings(const std::vector<FinishedMotion>& fini
         break;
       }
     }
-    const std::size_t first = motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size();
+    const std::size_t first = motion.first_contact(coupling::ContactKind::law_wire);
     for (std::size_t k = 0; k < motion.law_wires.size(); ++k) {
       const coupling::LawWire& wire = motion.law_wires[k];
       if (!wire.covers) continue;

@@ -18,15 +18,18 @@ namespace {
 /// Sign of the force of a contact on a body over that which results give; nothing where it is of others.
 std::optional<double> sign_on(const coupling::Motion& motion, int contact, int body) {
   const auto is_it = [body](const MotionCarrier& c) { return c.kind == MotionCarrier::Kind::body && c.index == body; };
-  std::size_t k = at(contact);
-  if (k < motion.contacts.size()) return motion.contacts[k].body == body ? std::optional(-1.0) : std::nullopt;
-  k -= motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size();
-  if (at(contact) < motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size())
-    return std::nullopt;
-  if (k < motion.law_wires.size()) return is_it(motion.law_wires[k].shaft.carrier) ? std::optional(-1.0) : std::nullopt;
-  const coupling::BodyContact& c = motion.body_contacts[k - motion.law_wires.size()];
-  if (is_it(c.carrier)) return 1.0;
-  return is_it(c.other) ? std::optional(-1.0) : std::nullopt;
+  const auto [kind, index] = motion.contact_place(at(contact));
+  switch (kind) {
+    case coupling::ContactKind::shape:
+      return motion.contacts[index].body == body ? std::optional(-1.0) : std::nullopt;
+    case coupling::ContactKind::law_wire:
+      return is_it(motion.law_wires[index].shaft.carrier) ? std::optional(-1.0) : std::nullopt;
+    case coupling::ContactKind::bodies:
+      if (is_it(motion.body_contacts[index].carrier)) return 1.0;
+      return is_it(motion.body_contacts[index].other) ? std::optional(-1.0) : std::nullopt;
+    default:
+      return std::nullopt;
+  }
 }
 
 }  // namespace

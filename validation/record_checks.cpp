@@ -14,9 +14,9 @@ namespace snare::validation {
 
 namespace {
 
-using identification::MotionTrace;
+using identification::RecordTrace;
 
-double relative_error(const identification::MotionStage& stage) {
+double relative_error(const identification::RecordStage& stage) {
   return stage.errors.empty() ? not_computed : stage.errors.front().relative;
 }
 
@@ -25,7 +25,7 @@ Row yes(const std::string& group, const std::string& name, const std::string& so
   return {group, name, "", source, kind, 1.0, value ? 1.0 : 0.0, Limit::relative(0.5)};
 }
 
-bool names(const MotionTrace& trace, const std::string& effect) {
+bool names(const RecordTrace& trace, const std::string& effect) {
   const auto is = [&](const std::string& label) { return label.starts_with(effect + " ("); };
   return std::any_of(trace.selected.begin(), trace.selected.end(), is) ||
          std::any_of(trace.partial.begin(), trace.partial.end(), is);
@@ -42,7 +42,7 @@ identification::RecordSet read(const std::filesystem::path& file, const std::fil
 }
 
 /// Correlation of what the final model leaves of the force with itself one cycle of the course later.
-double repeats(const MotionTrace& trace, const identification::RecordSet& set) {
+double repeats(const RecordTrace& trace, const identification::RecordSet& set) {
   constexpr double cycle = 6.24;  // s: after it the recorded reference is the same to the last digit
   const identification::MotionRecord& record = set.records.front();
   const Eigen::Index n = record.times.size();
@@ -58,7 +58,7 @@ std::vector<Row> drive_rows(const std::filesystem::path& file, const std::filesy
   const std::string group = "tracing of a measured drive";
   const std::string source = "Janot, Gautier, Brunot 2019 (EMPS): inverse model, the same low-pass filter";
   const identification::RecordSet set = read(file, csv, 2, true);
-  const MotionTrace t = identification::trace_records(set);
+  const RecordTrace t = identification::trace_records(set);
   const double before = t.base.heldout.empty() ? not_computed : t.base.heldout.front().rmse;
   const double after = t.final.heldout.empty() ? not_computed : t.final.heldout.front().rmse;
   // The authors' filter is Chebyshev's and theirs at the same 40 Hz; with ours their own regression changes by 0.05 % of the force.
@@ -85,7 +85,7 @@ std::vector<Row> pendulum_rows(const std::filesystem::path& file, const std::fil
   const std::string group = "tracing of a measured pendulum";
   const std::string source = "MultiArm-Pendulum, single pendulum: viscous bearing as its authors fit it";
   const identification::RecordSet set = read(file, csv, 6, false);
-  const MotionTrace t = identification::trace_records(set);
+  const RecordTrace t = identification::trace_records(set);
   const double declared = t.declared.heldout_rmse,
                last = t.with_partial ? t.with_partial->heldout_rmse : t.final.heldout_rmse;
   return {yes(group, "a constant loss is named, or helps without explaining", source, Kind::published_measurement,
@@ -107,7 +107,7 @@ struct FlightTruth {
 constexpr double made_gf = 9.3e7;        // N m/rad
 constexpr double made_ring_rate = 55.0;  // deg/s
 
-const identification::TracedNumber* number_of(const identification::MotionStage& stage, const std::string& key) {
+const identification::TracedNumber* number_of(const identification::RecordStage& stage, const std::string& key) {
   for (const identification::TracedNumber& n : stage.numbers)
     if (n.key == key) return &n;
   return nullptr;
@@ -117,7 +117,7 @@ double value_of(const identification::TracedNumber* number) {
   return number != nullptr ? number->value : not_computed;
 }
 
-bool not_identifiable(const MotionTrace& trace, const std::string& key) {
+bool not_identifiable(const RecordTrace& trace, const std::string& key) {
   return std::any_of(trace.warnings.begin(), trace.warnings.end(), [&](const std::string& w) {
     return w.starts_with(key) && w.find("not identifiable") != std::string::npos;
   });
@@ -128,7 +128,7 @@ std::vector<Row> flight_rows(const std::filesystem::path& folder, const FlightTr
   const std::string source =
       fmt::format("made with, by {}; the question of Honda et al. 2014, sections 4 and 5", truth.maker);
   const std::string name = std::string(", ") + truth.how;
-  const MotionTrace t =
+  const RecordTrace t =
       identification::trace_records(identification::read_records(folder / truth.file), {.effects = false});
   const auto* gf = number_of(t.base, "bushings[gf].rotational_stiffness_Nm_rad");
   const auto* rate = number_of(t.base, "phases[close].drives[1].rate_deg_s");
@@ -148,7 +148,7 @@ std::vector<Row> flight_rows(const std::filesystem::path& folder, const FlightTr
 
 /// Until just behind the first touch a flight shows the ring's rate at most.
 std::vector<Row> early_flight_rows(const std::filesystem::path& folder, const FlightTruth& truth) {
-  const MotionTrace t = identification::trace_records(
+  const RecordTrace t = identification::trace_records(
       identification::read_records(folder / truth.file, {{"records[1].to_s", "1.2"}}), {.effects = false});
   const auto* wire = number_of(t.base, truth.wire);
   return {yes("numbers of a capture from three rates of a flight",
@@ -164,9 +164,9 @@ std::vector<Row> attachment_rows(const std::filesystem::path& folder) {
   const std::string source =
       "made by snare simulate; the question of Honda et al. 2014, section 4.3: the amplitude in roll";
   constexpr double made = 1.0 / 1.25e6;  // rad/(N m)
-  const MotionTrace soft =
+  const RecordTrace soft =
       identification::trace_records(identification::read_records(folder / "flight_attachment.toml"));
-  const MotionTrace rigid = identification::trace_records(identification::read_records(
+  const RecordTrace rigid = identification::trace_records(identification::read_records(
       folder / "flight_attachment.toml",
       {{"records[1].file", "\"flight_rigid_1.csv\""}, {"records[2].file", "\"flight_rigid_2.csv\""}}));
   const double found = value_of(number_of(soft.final, "bushings[attachment].rotational_compliance_rad_Nm"));
@@ -185,8 +185,8 @@ std::vector<Row> air_table_rows(const std::filesystem::path& folder) {
   const std::string source = "Abiko et al., section 4.3; records by tests/blind_records/air_table.py";
   constexpr double made = 0.02;  // s
   const identification::RecordSet set = identification::read_records(folder / "air_table.toml");
-  const MotionTrace lagging = identification::trace_records(set);
-  const MotionTrace plain = identification::trace_records(identification::read_records(
+  const RecordTrace lagging = identification::trace_records(set);
+  const RecordTrace plain = identification::trace_records(identification::read_records(
       folder / "air_table.toml",
       {{"records[1].file", "\"air_table_plain_1.csv\""}, {"records[2].file", "\"air_table_plain_2.csv\""}}));
   const Eigen::VectorXd& measured = set.records[0].channels[0].values;

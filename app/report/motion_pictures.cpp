@@ -240,22 +240,22 @@ std::vector<ParaviewLine> MotionPictures::wire_lines(const MotionSample& s) cons
 }
 
 void MotionPictures::add_contact_forces(const MotionSample& s, std::vector<ParaviewLine>& lines) const {
-  const std::size_t contacts = motion_.contacts.size(), springs = motion_.point_contacts.size();
-  const std::size_t pairs = motion_.wire_pairs.size(), rods = s.wires.size() - s.law_tensions.size();
+  const std::size_t rods = s.wires.size() - s.law_tensions.size();
   const auto add = [&lines](std::size_t wire, const coupling::ContactSample& c, double sign) {
     if (wire >= lines.size()) return;
     if (c.points.empty() && c.closed) share_out(lines[wire], c.point, sign * c.force);
     for (const coupling::ContactSample& p : c.points) share_out(lines[wire], p.point, sign * p.force);
   };
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    if (k < contacts) {
-      add(at(motion_.contacts[k].wire), s.contacts[k], 1.0);
-    } else if (k >= contacts + springs && k < contacts + springs + pairs) {
-      const coupling::WirePair& pair = motion_.wire_pairs[k - contacts - springs];
+    const auto [kind, index] = motion_.contact_place(k);
+    if (kind == coupling::ContactKind::shape) {
+      add(at(motion_.contacts[index].wire), s.contacts[k], 1.0);
+    } else if (kind == coupling::ContactKind::wire_pair) {
+      const coupling::WirePair& pair = motion_.wire_pairs[index];
       add(at(pair.wires[0]), s.contacts[k], 1.0);
       add(at(pair.wires[1]), s.contacts[k], -1.0);
-    } else if (k >= contacts + springs + pairs && k < contacts + springs + pairs + s.law_tensions.size()) {
-      add(rods + k - contacts - springs - pairs, s.contacts[k], 1.0);
+    } else if (kind == coupling::ContactKind::law_wire) {
+      add(rods + index, s.contacts[k], 1.0);
     }
   }
 }

@@ -12,9 +12,9 @@
 namespace snare::app {
 
 using identification::ChannelError;
-using identification::MotionStage;
-using identification::MotionTrace;
 using identification::RecordSet;
+using identification::RecordStage;
+using identification::RecordTrace;
 using identification::TracedNumber;
 using identification::VerdictKind;
 
@@ -24,7 +24,7 @@ std::string probability(double p) {
   return p < 1e-12 ? "< 1e-12" : format_number(p, 2);
 }
 
-void errors(ReportPage& page, const MotionTrace& trace) {
+void errors(ReportPage& page, const RecordTrace& trace) {
   Table table{"Error of the simulation",
               {"Records"_text, "Sensor"_code, "Unit"_text, "Declared"_number, "Base fit"_number, "Final"_number,
                "Final, of the readings"_number}};
@@ -41,7 +41,7 @@ void errors(ReportPage& page, const MotionTrace& trace) {
   page.table(table);
 }
 
-void numbers(ReportPage& page, const MotionStage& stage) {
+void numbers(ReportPage& page, const RecordStage& stage) {
   Table table{"Numbers of the final model", {"Key"_code, "Value"_number, "95 %"_number, "Unit"_text}};
   for (const TracedNumber& n : stage.numbers)
     table.rows.push_back({n.key, format_number(n.value),
@@ -50,7 +50,7 @@ void numbers(ReportPage& page, const MotionStage& stage) {
 }
 
 /// Limits, and the rise of the misfit along each number.
-void profiles(ReportPage& page, const MotionTrace& trace) {
+void profiles(ReportPage& page, const RecordTrace& trace) {
   Table table{"Intervals of 95 % by profile: the number is held, all others are fitted anew",
               {"Key"_code, "Value"_number, "From"_number, "To"_number, "Unit"_text}};
   const auto limit = [](const identification::ProfileSide& side) {
@@ -76,14 +76,14 @@ void profiles(ReportPage& page, const MotionTrace& trace) {
   }
 }
 
-void rounds(ReportPage& page, const MotionTrace& trace) {
+void rounds(ReportPage& page, const RecordTrace& trace) {
   for (std::size_t k = 0; k < trace.rounds.size(); ++k) {
-    const identification::MotionRound& round = trace.rounds[k];
+    const identification::RecordRound& round = trace.rounds[k];
     Table table{fmt::format("Round {}: {}{}", k + 1, round.added.empty() ? "none added" : round.added + " added",
                             round.reason.empty() ? "" : "; " + round.reason),
                 {"Effect"_code, "Score"_number, "p (Holm)"_number, "Error after refit"_number, "Value"_number,
                  "Would be seen from"_number, "Remark"_text}};
-    for (const identification::MotionCandidate& c : round.candidates)
+    for (const identification::RecordCandidate& c : round.candidates)
       table.rows.push_back({trace.effects[c.score.effect].label(),
                             c.score.unobservable.empty() ? format_number(c.score.z, 3) : std::string(),
                             c.score.unobservable.empty() ? probability(c.score.adjusted_p) : std::string(),
@@ -104,9 +104,9 @@ Curve curve_of(const char* name, const Eigen::VectorXd& x, const Eigen::VectorXd
   return make_curve(name, Values(x.begin(), x.end()), Values(y.begin(), y.end()), style, colour);
 }
 
-void records(ReportPage& page, const RecordSet& set, const MotionTrace& trace) {
+void records(ReportPage& page, const RecordSet& set, const RecordTrace& trace) {
   for (std::size_t r = 0; r < set.records.size(); ++r) {
-    const identification::MotionRecord& record = set.records[r];
+    const identification::Record& record = set.records[r];
     if (r >= trace.final.predictions.size() || trace.final.predictions[r].channels.empty()) continue;
     page.subheading(record.name + (record.heldout ? " (held out)" : ""));
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
@@ -121,7 +121,7 @@ void records(ReportPage& page, const RecordSet& set, const MotionTrace& trace) {
       PlotSpecification spectrum{"measured less simulated, by frequency", {"frequency", "Hz"}, {"amplitude", unit}};
       plot.width = remainder.width = PlotWidth::full;
       plot.curves.push_back(curve_of("measured", record.times, measured, CurveStyle::points, 0));
-      const auto add = [&](const char* name, const MotionStage& stage, CurveStyle style, int colour) {
+      const auto add = [&](const char* name, const RecordStage& stage, CurveStyle style, int colour) {
         if (r >= stage.predictions.size() || stage.predictions[r].channels.empty()) return;
         const Eigen::VectorXd& y = stage.predictions[r].channels[c];
         plot.curves.push_back(curve_of(name, record.times, y, style, colour));
@@ -146,7 +146,7 @@ void records(ReportPage& page, const RecordSet& set, const MotionTrace& trace) {
 
 }  // namespace
 
-std::string record_verdict(const MotionTrace& trace) {
+std::string record_verdict(const RecordTrace& trace) {
   const std::string names = fmt::format("{}", fmt::join(trace.selected, ", "));
   switch (trace.kind) {
     case VerdictKind::nothing_missing:
@@ -175,7 +175,7 @@ std::string record_verdict(const MotionTrace& trace) {
       fmt::join(trace.partial, ", "), 100.0 * (1.0 - trace.share_left));
 }
 
-std::string record_report_html(const RecordSet& set, const MotionTrace& trace) {
+std::string record_report_html(const RecordSet& set, const RecordTrace& trace) {
   ReportPage page(set.title, set.source);
   page.doubts(trace.warnings, trace.interrupted);
   page.heading("Verdict");

@@ -1,17 +1,17 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 #include <algorithm>
 
 namespace snare::identification {
 
 /// Centre of mass of a body, which stands at the origin of its frame where nothing is declared. Of a body that is placed in the file.
-std::vector<MotionEffect> body_centre_of_mass_effects(const MotionModel& model) {
+std::vector<RecordEffect> body_centre_of_mass_effects(const RecordModel& model) {
   constexpr double one_mm = 1.0, furthest = 1e4;  // [mm]
-  std::vector<MotionEffect> effects;
+  std::vector<RecordEffect> effects;
   for (const std::string& name : model.declared().names("bodies")) {
     const std::string body = "bodies[" + name + "].", key = body + "com_mm";
     if (!model.declared().number(body + "mass_kg")) continue;  // a driven one has none
-    MotionEffect effect{.name = "body_centre_of_mass",
+    RecordEffect effect{.name = "body_centre_of_mass",
                         .place = name,
                         .channel = "body",
                         .meaning = "the body's centre of mass is elsewhere",
@@ -19,7 +19,7 @@ std::vector<MotionEffect> body_centre_of_mass_effects(const MotionModel& model) 
     for (const char* axis : {"[1]", "[2]", "[3]"}) {
       const std::string own = key + axis;
       if (is_fitted(model, own)) continue;
-      MotionNumber number = number_at(own, model.declared().number(own).value_or(0.0), one_mm);
+      RecordNumber number = number_at(own, model.declared().number(own).value_or(0.0), one_mm);
       number.overrides = [key, own, moved = number.overrides](double value, const StandingNumbers& record) {
         std::vector<base::Override> overrides = moved(value, record);
         const bool there = record.number(own).has_value() ||

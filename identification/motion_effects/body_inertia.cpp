@@ -1,10 +1,10 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Moments of inertia of a body, all that are not fitted by one factor.
-std::vector<MotionEffect> body_inertia_effects(const MotionModel& model) {
-  std::vector<MotionEffect> effects;
+std::vector<RecordEffect> body_inertia_effects(const RecordModel& model) {
+  std::vector<RecordEffect> effects;
   for (const std::string& name : model.declared().names("bodies")) {
     const std::string key = "bodies[" + name + "].inertia_kg_m2";
     std::vector<std::pair<std::string, double>> moments;  // those that are not fitted by themselves
@@ -13,7 +13,7 @@ std::vector<MotionEffect> body_inertia_effects(const MotionModel& model) {
       if (declared && *declared > 0.0 && !is_fitted(model, key + axis)) moments.emplace_back(key + axis, *declared);
     }
     if (moments.empty()) continue;
-    MotionNumber factor = number_at(key + ".factor", 1.0, 0.02);
+    RecordNumber factor = number_at(key + ".factor", 1.0, 0.02);
     factor.lower = 0.01;
     factor.upper = 100.0;
     factor.unit = "";

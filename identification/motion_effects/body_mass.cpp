@@ -1,9 +1,9 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Mass of a body.
-std::vector<MotionEffect> body_mass_effects(const MotionModel& model) {
+std::vector<RecordEffect> body_mass_effects(const RecordModel& model) {
   return other_number(model, "bodies", "mass_kg",
                       {.name = "body_mass",
                        .channel = "body",

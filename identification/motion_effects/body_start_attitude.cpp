@@ -1,9 +1,9 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Attitude of a body at the start, by its rotation vector.
-std::vector<MotionEffect> body_start_attitude_effects(const MotionModel& model) {
+std::vector<RecordEffect> body_start_attitude_effects(const RecordModel& model) {
   return other_body_vector(model, "rotation_deg",
                            {.name = "body_start_attitude",
                             .channel = "body",

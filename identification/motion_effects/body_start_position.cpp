@@ -1,9 +1,9 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Place of a body at the start.
-std::vector<MotionEffect> body_start_position_effects(const MotionModel& model) {
+std::vector<RecordEffect> body_start_position_effects(const RecordModel& model) {
   return other_body_vector(model, "position_mm",
                            {.name = "body_start_position",
                             .channel = "body",

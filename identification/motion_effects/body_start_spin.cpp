@@ -1,9 +1,9 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Spin of a body at the start.
-std::vector<MotionEffect> body_start_spin_effects(const MotionModel& model) {
+std::vector<RecordEffect> body_start_spin_effects(const RecordModel& model) {
   return other_body_vector(model, "spin_rad_s",
                            {.name = "body_start_spin",
                             .channel = "body",

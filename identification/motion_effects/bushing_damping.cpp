@@ -1,12 +1,12 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Damping of a bushing: (M.22).
-std::vector<MotionEffect> bushing_damping_effects(const MotionModel& model) {
-  std::vector<MotionEffect> effects;
+std::vector<RecordEffect> bushing_damping_effects(const RecordModel& model) {
+  std::vector<RecordEffect> effects;
   for (const char* key : {"rotational_damping_Nms_rad", "translational_damping_Ns_m"}) {
-    for (MotionEffect& e : other_number(model, "bushings", key,
+    for (RecordEffect& e : other_number(model, "bushings", key,
                                         {.name = "bushing_damping",
                                         .channel = "bushing",
                                         .meaning = "the attachment damps more or less",

@@ -1,4 +1,4 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
@@ -6,9 +6,9 @@ namespace {
 
 /// What a bushing gives, 1/k in the unit of that: motions go with it nearly in proportion, also where it is declared as good as rigid and gives a
 /// thousand times more. In a record that declares the stiffness k otherwise it gives more by the same factor.
-MotionNumber compliance_of(const std::string& key, const std::string& name, const std::string& unit, double stiffness) {
+RecordNumber compliance_of(const std::string& key, const std::string& name, const std::string& unit, double stiffness) {
   const double null = 1.0 / stiffness;
-  MotionNumber number = number_at(name, null, 0.02 * null);
+  RecordNumber number = number_at(name, null, 0.02 * null);
   number.unit = unit;
   number.overrides = [key, stiffness, null](double value, const StandingNumbers& record) {
     return std::vector<base::Override>{{key, exact_text(record.number(key).value_or(stiffness) * (null / value))}};
@@ -21,14 +21,14 @@ MotionNumber compliance_of(const std::string& key, const std::string& name, cons
 }  // namespace
 
 /// Stiffness of a bushing, as an attachment that gives: (M.22). Turning and shifting for themselves, all axes by one factor.
-std::vector<MotionEffect> bushing_stiffness_effects(const MotionModel& model) {
+std::vector<RecordEffect> bushing_stiffness_effects(const RecordModel& model) {
   struct Way {
     const char *key, *compliance, *unit;
   };
-  std::vector<MotionEffect> effects;
+  std::vector<RecordEffect> effects;
   for (const Way& way : {Way{"rotational_stiffness_Nm_rad", "rotational_compliance_rad_Nm", "rad/(N m)"},
                          Way{"translational_stiffness_N_m", "translational_compliance_m_N", "m/N"}}) {
-    for (MotionEffect& e :
+    for (RecordEffect& e :
          other_number(model, "bushings", way.key,
                       {.name = "bushing_stiffness",
                       .channel = "bushing",

@@ -1,9 +1,9 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Friction of a shape on wires, where some is declared.
-std::vector<MotionEffect> contact_friction_effects(const MotionModel& model) {
+std::vector<RecordEffect> contact_friction_effects(const RecordModel& model) {
   return other_number(model, "shapes", "friction",
                       {.name = "contact_friction",
                        .channel = "contact",

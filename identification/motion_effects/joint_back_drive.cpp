@@ -1,9 +1,9 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Torque that a limp gear needs to be driven back, where one is declared: (A.11).
-std::vector<MotionEffect> joint_back_drive_effects(const MotionModel& model) {
+std::vector<RecordEffect> joint_back_drive_effects(const RecordModel& model) {
   return other_joint_number(model, "back_drive_Nm",
                             {.name = "joint_back_drive",
                              .channel = "joint",

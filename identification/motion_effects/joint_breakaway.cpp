@@ -1,12 +1,12 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Dry friction that is larger at rest and falls off with the speed: (A.11), T_s - T_c beside the dry friction that the model has. Where no speed
 /// is declared at which it has fallen off, a fifth of the rms along the first record.
-std::vector<MotionEffect> joint_breakaway_effects(const MotionModel& model) {
+std::vector<RecordEffect> joint_breakaway_effects(const RecordModel& model) {
   constexpr double share_of_rate = 0.2;
-  std::vector<MotionEffect> effects;
+  std::vector<RecordEffect> effects;
   for (const JointPlace& joint : joint_places(model)) {
     if (!(joint.use.rate > 0.0) || !(joint.use.torque > 0.0)) continue;
     const std::string dry = joint.prefix + "coulomb_Nm", key = joint.prefix + "breakaway_Nm",
@@ -16,7 +16,7 @@ std::vector<MotionEffect> joint_breakaway_effects(const MotionModel& model) {
       return record.number(key).value_or(coulomb) - coulomb;
     };
     const double declared = beside(model.declared());
-    MotionNumber number = number_at(joint.prefix + "breakaway_excess_Nm", declared, 0.02 * joint.use.torque);
+    RecordNumber number = number_at(joint.prefix + "breakaway_excess_Nm", declared, 0.02 * joint.use.torque);
     number.unit = unit_of_key(key);
     number.overrides = [=](double value, const StandingNumbers& record) {
       const double more = value + (beside(record) - declared);

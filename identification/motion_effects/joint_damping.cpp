@@ -1,9 +1,9 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Damping of a linear gear: (A.10).
-std::vector<MotionEffect> joint_damping_effects(const MotionModel& model) {
+std::vector<RecordEffect> joint_damping_effects(const RecordModel& model) {
   return other_joint_number(model, "damping_Nms_rad",
                             {.name = "joint_damping",
                              .channel = "joint",

@@ -1,9 +1,9 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Stiffness of a linear gear: (A.10).
-std::vector<MotionEffect> joint_stiffness_effects(const MotionModel& model) {
+std::vector<RecordEffect> joint_stiffness_effects(const RecordModel& model) {
   return other_joint_number(model, "stiffness_Nm_rad",
                             {.name = "joint_stiffness",
                              .channel = "joint",

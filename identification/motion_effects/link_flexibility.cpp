@@ -1,17 +1,17 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Bending of a link, in its first mode either way, about where its joint carries it: (A.19). It is tried at what a torque of that joint bends by 0.01 deg.
-std::vector<MotionEffect> link_flexibility_effects(const MotionModel& model) {
+std::vector<RecordEffect> link_flexibility_effects(const RecordModel& model) {
   constexpr double small = 2e-4, most = 0.1;  // [rad]
-  std::vector<MotionEffect> effects;
+  std::vector<RecordEffect> effects;
   for (const JointPlace& joint : joint_places(model)) {
     if (joint.use.slides || !(joint.use.torque > 0.0)) continue;
     const std::string arm = joint.name.substr(0, joint.name.find("::"));
     const std::string key = "arms[" + arm + "].link." + joint.use.link + ".bending_compliance_rad_Nm";
     const double declared = model.declared().number(key).value_or(0.0);
-    MotionNumber number = number_at(key, declared, small / joint.use.torque);
+    RecordNumber number = number_at(key, declared, small / joint.use.torque);
     number.unit = "rad/(N m)";
     number.lower = 0.0;
     effects.push_back(

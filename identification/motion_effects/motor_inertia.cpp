@@ -1,9 +1,9 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Inertia of a rotor on the side of the output: (A.9).
-std::vector<MotionEffect> motor_inertia_effects(const MotionModel& model) {
+std::vector<RecordEffect> motor_inertia_effects(const RecordModel& model) {
   return other_joint_number(model, "motor_inertia_kg_m2",
                             {.name = "motor_inertia",
                              .channel = "joint",

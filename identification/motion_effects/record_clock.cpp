@@ -1,12 +1,12 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Clock of the records: all that they tell is later, as with one delay of all sensors, (I.23). Where there is one sensor, its own delay is that.
-std::vector<MotionEffect> record_clock_effects(const MotionModel& model) {
+std::vector<RecordEffect> record_clock_effects(const RecordModel& model) {
   const std::vector<ChannelPlace> channels = channel_places(model);
   if (channels.size() < 2) return {};
-  MotionNumber number;
+  RecordNumber number;
   number.key = "record_clock";
   number.unit = "s";
   number.scale = channels.front().interval;

@@ -1,12 +1,12 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Zero of a sensor: (I.23).
-std::vector<MotionEffect> sensor_bias_effects(const MotionModel& model) {
-  std::vector<MotionEffect> effects;
+std::vector<RecordEffect> sensor_bias_effects(const RecordModel& model) {
+  std::vector<RecordEffect> effects;
   for (const ChannelPlace& channel : channel_places(model)) {
-    MotionNumber number;
+    RecordNumber number;
     number.key = "sensor_bias[" + channel.column + "]";
     number.unit = unit_of_key(channel.column);
     number.declared = 0.0;

@@ -1,12 +1,12 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Gain of a sensor: (I.23).
-std::vector<MotionEffect> sensor_gain_effects(const MotionModel& model) {
-  std::vector<MotionEffect> effects;
+std::vector<RecordEffect> sensor_gain_effects(const RecordModel& model) {
+  std::vector<RecordEffect> effects;
   for (const ChannelPlace& channel : channel_places(model)) {
-    MotionNumber number;
+    RecordNumber number;
     number.key = "sensor_gain[" + channel.column + "]";
     number.unit = "";
     number.declared = 1.0;

@@ -1,9 +1,9 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Proportional gain of a servo.
-std::vector<MotionEffect> servo_gain_effects(const MotionModel& model) {
+std::vector<RecordEffect> servo_gain_effects(const RecordModel& model) {
   return other_joint_number(
       model, "proportional_Nm_rad",
       {.name = "servo_gain",

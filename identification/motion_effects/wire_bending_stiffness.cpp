@@ -1,9 +1,9 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Stiffness of a wire against bending, where it is declared.
-std::vector<MotionEffect> wire_bending_stiffness_effects(const MotionModel& model) {
+std::vector<RecordEffect> wire_bending_stiffness_effects(const RecordModel& model) {
   return other_wire_number(model, "bending_stiffness_Nm2",
                            {.name = "wire_bending_stiffness",
                             .channel = "wire",

@@ -1,9 +1,9 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
 /// Modulus of a wire: both its stiffnesses together.
-std::vector<MotionEffect> wire_modulus_effects(const MotionModel& model) {
+std::vector<RecordEffect> wire_modulus_effects(const RecordModel& model) {
   return other_wire_number(model, "youngs_modulus_GPa",
                            {.name = "wire_modulus",
                             .channel = "wire",

@@ -42,12 +42,12 @@ void tally(const std::vector<double>& abscissa, const std::vector<double>& resid
 
 }  // namespace
 
-std::vector<Leftover> leftovers(const MotionModel& model, const MotionData& data, const MotionFit& fit) {
+std::vector<Leftover> leftovers(const RecordModel& model, const RecordData& data, const RecordFit& fit) {
   const RecordSet& set = model.records();
   std::map<std::pair<std::string, std::string>, std::array<std::vector<double>, 2>> pairs;
   std::map<std::string, std::vector<int>> block_of;
   for (const ResidualPiece& piece : data.pieces) {
-    const MotionRecord& record = set.records[piece.record];
+    const Record& record = set.records[piece.record];
     const std::string& sensor = record.channels[piece.channel].sensor;
     const RecordPrediction& prediction = fit.predictions[data.place_of(piece.record)];
     const Eigen::VectorXd& own = prediction.channels[piece.channel];

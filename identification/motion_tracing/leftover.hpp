@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/records/motion_fit.hpp"
+#include "identification/records/record_fit.hpp"
 
 #include <string>
 #include <vector>
@@ -16,6 +16,6 @@ struct Leftover {
 };
 
 /// For every fitted channel, best first.
-[[nodiscard]] std::vector<Leftover> leftovers(const MotionModel& model, const MotionData& data, const MotionFit& fit);
+[[nodiscard]] std::vector<Leftover> leftovers(const RecordModel& model, const RecordData& data, const RecordFit& fit);
 
 }  // namespace snare::identification

@@ -1,7 +1,7 @@
 #include "identification/motion_tracing/model_family.hpp"
 
 #include "identification/fitting/statistics.hpp"
-#include "identification/motion_tracing/motion_stage.hpp"
+#include "identification/motion_tracing/record_stage.hpp"
 
 #include <fmt/format.h>
 
@@ -21,27 +21,27 @@ bool shown(const TracedNumber& n) {
 }  // namespace
 
 std::vector<ModelFamily> fit_families(const RecordSet& set, const ChannelScales& scales,
-                                      const std::vector<MotionSetting>& base,
+                                      const std::vector<RecordSetting>& base,
                                       const std::function<bool(int iteration, double chi2)>& progress) {
   std::vector<ModelFamily> families;
   bool stop = false;
   for (const RecordFamily& family : set.families) {
     RecordSet other = set;
     for (const base::Override& one : family.set) other.set.push_back(one);
-    const MotionModel model(other, [&stop] { return stop; });
+    const RecordModel model(other, [&stop] { return stop; });
     const std::vector<std::size_t> fitted = other.used(false);
-    const MotionData data = motion_data(other, fitted, scales);
+    const RecordData data = record_data(other, fitted, scales);
     // The same numbers from where the base has led them; what the keys declare otherwise begins there.
-    std::vector<MotionSetting> start = model.free_settings(fitted);
-    for (MotionSetting& s : start)
-      for (const MotionSetting& reached : base)
+    std::vector<RecordSetting> start = model.free_settings(fitted);
+    for (RecordSetting& s : start)
+      for (const RecordSetting& reached : base)
         if (reached.number.key == s.number.key && reached.number.declared == s.number.declared) s.value = reached.value;
-    MotionFitOptions options;
+    RecordFitOptions options;
     options.progress = [&](int iteration, double chi2) {
       stop = progress && !progress(iteration, chi2);
       return !stop;
     };
-    const MotionFit fit = fit_motion(model, data, start, options);
+    const RecordFit fit = fit_motion(model, data, start, options);
     if (stop) return families;
     ModelFamily told;
     told.name = family.name;
@@ -49,7 +49,7 @@ std::vector<ModelFamily> fit_families(const RecordSet& set, const ChannelScales&
     if (!fit.report.usable()) {
       told.failure = fit.report.message;
     } else {
-      const MotionStage stage = motion_stage(model, data, fit, nullptr, {});
+      const RecordStage stage = record_stage(model, data, fit, nullptr, {});
       told.numbers = stage.numbers;
       told.chi2_dof = stage.chi2_dof;
     }

@@ -44,7 +44,7 @@ struct ChannelSums {
   }
 };
 
-std::map<std::string, ChannelSums> sums_of(const MotionData& data, const std::vector<RecordPrediction>& predictions) {
+std::map<std::string, ChannelSums> sums_of(const RecordData& data, const std::vector<RecordPrediction>& predictions) {
   std::map<std::string, ChannelSums> sums;
   for (const ResidualPiece& piece : data.pieces) {
     const RecordPrediction& prediction = predictions[data.place_of(piece.record)];
@@ -87,7 +87,7 @@ std::optional<Finding> channel_finding(const std::string& sensor, const ChannelS
 
 }  // namespace
 
-std::vector<Finding> channel_findings(const MotionData& data,
+std::vector<Finding> channel_findings(const RecordData& data,
                                       const std::vector<const std::vector<RecordPrediction>*>& predictions) {
   std::vector<Finding> findings;
   for (const std::vector<RecordPrediction>* of_model : predictions) {
@@ -100,7 +100,7 @@ std::vector<Finding> channel_findings(const MotionData& data,
   return findings;
 }
 
-std::vector<Finding> number_findings(const MotionStage& stage, const std::vector<MotionSetting>& settings) {
+std::vector<Finding> number_findings(const RecordStage& stage, const std::vector<RecordSetting>& settings) {
   std::vector<Finding> findings;
   for (const OpenNumbers& open : stage.open) {
     Finding f{.kind = FindingKind::not_identifiable, .key = open.changes.front().key, .sure = true};
@@ -120,7 +120,7 @@ std::vector<Finding> number_findings(const MotionStage& stage, const std::vector
       findings.push_back(std::move(f));
       continue;
     }
-    const auto declared = std::ranges::find_if(settings, [&](const MotionSetting& s) { return s.number.key == n.key; });
+    const auto declared = std::ranges::find_if(settings, [&](const RecordSetting& s) { return s.number.key == n.key; });
     if (!n.identified || declared == settings.end() || declared->number.declared == 0.0) continue;
     const double ratio = n.value / declared->number.declared;
     const Factor* slip = near_factor(ratio, within);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/motion_tracing/motion_trace.hpp"
+#include "identification/motion_tracing/record_trace.hpp"
 
 #include <vector>
 
@@ -10,11 +10,11 @@ namespace snare::identification {
 /// the factor, they follow it to a fifth of their standard deviation. predictions: of the records of `data`, of several models; may
 /// hold none.
 [[nodiscard]] std::vector<Finding> channel_findings(
-    const MotionData& data, const std::vector<const std::vector<RecordPrediction>*>& predictions);
+    const RecordData& data, const std::vector<const std::vector<RecordPrediction>*>& predictions);
 
 /// Numbers that stand on a bound, that the records leave open, or that are a unit's factor times their declared values.
 /// settings: of the numbers, with what is declared.
-[[nodiscard]] std::vector<Finding> number_findings(const MotionStage& stage,
-                                                   const std::vector<MotionSetting>& settings);
+[[nodiscard]] std::vector<Finding> number_findings(const RecordStage& stage,
+                                                   const std::vector<RecordSetting>& settings);
 
 }  // namespace snare::identification

@@ -2,10 +2,10 @@
 
 #include "identification/fitting/statistics.hpp"
 #include "identification/motion_tracing/model_family.hpp"
-#include "identification/motion_tracing/motion_beginnings.hpp"
-#include "identification/motion_tracing/motion_round.hpp"
-#include "identification/motion_tracing/motion_stage.hpp"
+#include "identification/motion_tracing/record_beginnings.hpp"
 #include "identification/motion_tracing/record_findings.hpp"
+#include "identification/motion_tracing/record_round.hpp"
+#include "identification/motion_tracing/record_stage.hpp"
 
 #include <fmt/format.h>
 
@@ -23,24 +23,24 @@ constexpr int most_reweighings = 3;
 /// Everything that is kept along the way.
 class Tracer {
  public:
-  Tracer(const RecordSet& set, const MotionTraceOptions& options)
+  Tracer(const RecordSet& set, const RecordTraceOptions& options)
       : set_(set),
         options_(options),
         model_(set, [this] { return stop_; }),
         fitted_(set.used(false)),
         heldout_(set.used(true)) {}
 
-  MotionTrace run() {
+  RecordTrace run() {
     weigh(first_scales(set_, fitted_));
     if (!go_on("declared model")) return end("interrupted before the declared model was simulated");
-    MotionFitOptions look;
+    RecordFitOptions look;
     look.derivatives = FitDerivatives::last;
     look.progress = asked();
     // The numbers of every record for itself are no part of the model: also the declared one has its own.
-    std::vector<MotionSetting> own, shared;
-    for (const MotionSetting& s : model_.free_settings(fitted_)) (s.number.record ? own : shared).push_back(s);
+    std::vector<RecordSetting> own, shared;
+    for (const RecordSetting& s : model_.free_settings(fitted_)) (s.number.record ? own : shared).push_back(s);
     look.fixed = shared;
-    const MotionFit declared = fit_motion(model_, data_, own, look);
+    const RecordFit declared = fit_motion(model_, data_, own, look);
     if (!declared.report.usable()) return end(declared.report.message);
     trace_.findings = channel_findings(data_, {&declared.predictions});
     if (!go_on("base fit")) return end("interrupted before the base fit was finished");
@@ -93,10 +93,10 @@ class Tracer {
   void profile() {
     for (const FreeNumber& f : set_.free) {
       for (std::size_t k = 0; f.profile && k < current_.settings.size(); ++k) {
-        const MotionNumber& number = current_.settings[k].number;
+        const RecordNumber& number = current_.settings[k].number;
         if (number.key != f.key && !(number.record && number.key.ends_with("." + f.key))) continue;
         if (!go_on("profile of " + number.key)) return;
-        MotionFitOptions options;
+        RecordFitOptions options;
         options.progress = asked();
         Profile found = profile_of(model_, data_, current_, k, options);
         if (stop_) return;  // half a profile is none
@@ -128,7 +128,7 @@ class Tracer {
   void warn() {
     const std::optional<SlowMode>& slow = model_.slowest();
     for (const std::size_t r : fitted_) {
-      const MotionRecord& record = set_.records[r];
+      const Record& record = set_.records[r];
       const double length = record.times[record.times.size() - 1] - record.times[0];
       if (slow && length < slow->period)
         trace_.warnings.push_back(
@@ -150,16 +150,16 @@ class Tracer {
   }
   void reached() {
     if (!options_.reached) return;
-    MotionTrace part = trace_;
+    RecordTrace part = trace_;
     part.interrupted = true;
     options_.reached(part);
   }
   void weigh(const ChannelScales& scales) {
     scales_ = scales;
-    data_ = motion_data(set_, fitted_, scales);
-    heldout_data_ = motion_data(set_, heldout_, scales);
+    data_ = record_data(set_, fitted_, scales);
+    heldout_data_ = record_data(set_, heldout_, scales);
   }
-  MotionTrace end(std::string why) {
+  RecordTrace end(std::string why) {
     for (const Finding& f : trace_.findings) why += "; " + f.what;
     trace_.interrupted = stop_;
     static_cast<void>(
@@ -169,15 +169,15 @@ class Tracer {
   }
 
   /// Least squares with the channels weighed by what they leave, where their noise is not declared and there are several.
-  MotionFit base_fit() {
-    MotionFitOptions options;
+  RecordFit base_fit() {
+    RecordFitOptions options;
     options.method = set_.method;
     options.simplex_change = set_.simplex_change;
     options.progress = asked();
-    MotionFit fit = fit_motion(model_, data_, model_.free_settings(fitted_), options);
+    RecordFit fit = fit_motion(model_, data_, model_.free_settings(fitted_), options);
     if (fit.report.usable() && !fit.settings.empty() && options.method == FitMethod::gauss_newton &&
         out_of_step(data_, fit) && !stop_) {
-      MotionFit grown = fit_from_beginnings(model_, data_, model_.free_settings(fitted_), options);
+      RecordFit grown = fit_from_beginnings(model_, data_, model_.free_settings(fitted_), options);
       grown.simulations += fit.simulations;
       if (grown.report.usable() && grown.chi2 < fit.chi2) fit = std::move(grown);
     }
@@ -207,20 +207,20 @@ class Tracer {
   }
 
   /// A fitted model on the held-out records: what belongs to a record is fitted there, the rest stays.
-  std::optional<MotionFit> on_heldout(const MotionFit& fit, const std::vector<MotionSetting>& fixed) {
+  std::optional<RecordFit> on_heldout(const RecordFit& fit, const std::vector<RecordSetting>& fixed) {
     if (heldout_.empty()) return std::nullopt;
-    MotionFitOptions options;
+    RecordFitOptions options;
     options.derivatives = FitDerivatives::last;
     options.progress = asked();
-    for (const MotionSetting& s : together(fit.settings, fixed))
+    for (const RecordSetting& s : together(fit.settings, fixed))
       if (!s.number.record) options.fixed.push_back(s);
     // From where the first model has led them: the same starts for all others.
     options.first_jacobian = heldout_jacobian_;
     if (heldout_starts_) return fit_motion(model_, heldout_data_, *heldout_starts_, options);
-    std::vector<MotionSetting> own;
-    for (const MotionSetting& s : model_.free_settings(heldout_))
+    std::vector<RecordSetting> own;
+    for (const RecordSetting& s : model_.free_settings(heldout_))
       if (s.number.record) own.push_back(s);
-    MotionFit fitted = fit_motion(model_, heldout_data_, own, options);
+    RecordFit fitted = fit_motion(model_, heldout_data_, own, options);
     if (fitted.report.usable()) {
       heldout_starts_ = fitted.settings;
       heldout_jacobian_ = fitted.jacobian;
@@ -228,14 +228,14 @@ class Tracer {
     return fitted;
   }
 
-  MotionStage stage(const MotionFit& fit, const std::vector<MotionSetting>& fixed) {
-    const std::optional<MotionFit> heldout = on_heldout(fit, fixed);
+  RecordStage stage(const RecordFit& fit, const std::vector<RecordSetting>& fixed) {
+    const std::optional<RecordFit> heldout = on_heldout(fit, fixed);
     heldout_residual_ = heldout && heldout->report.usable() ? heldout->residual : Eigen::VectorXd();
-    return motion_stage(model_, data_, fit, heldout && heldout->report.usable() ? &*heldout : nullptr, heldout_data_);
+    return record_stage(model_, data_, fit, heldout && heldout->report.usable() ? &*heldout : nullptr, heldout_data_);
   }
 
   /// Whether the error of a channel is more than is worth a name.
-  [[nodiscard]] bool large(const MotionStage& s) const {
+  [[nodiscard]] bool large(const RecordStage& s) const {
     return std::any_of(s.errors.begin(), s.errors.end(),
                        [&](const ChannelError& e) { return e.fitted && e.rmse > tolerance(e.sensor); });
   }
@@ -244,7 +244,7 @@ class Tracer {
   struct ChannelMisfit {
     double chi2 = 0.0, readings = 0.0;
   };
-  [[nodiscard]] std::map<std::string, ChannelMisfit> misfits(const MotionStage& s,
+  [[nodiscard]] std::map<std::string, ChannelMisfit> misfits(const RecordStage& s,
                                                              const Eigen::VectorXd& residual) const {
     std::map<std::string, ChannelMisfit> found;
     for (const ResidualPiece& p : data_.pieces) {
@@ -259,7 +259,7 @@ class Tracer {
   }
 
   /// Whether an error is more than noise, and more than is worth a name.
-  [[nodiscard]] bool more_than_noise(const MotionStage& s, const Eigen::VectorXd& residual, double* ljung, double* runs,
+  [[nodiscard]] bool more_than_noise(const RecordStage& s, const Eigen::VectorXd& residual, double* ljung, double* runs,
                                      double* lack) const {
     std::vector<Eigen::VectorXd> pieces;
     for (const ResidualPiece& p : data_.pieces) pieces.emplace_back(residual.segment(p.begin, p.size));
@@ -280,7 +280,7 @@ class Tracer {
   /// Error of a channel below which nothing is called missing, in its unit.
   [[nodiscard]] double tolerance(const std::string& sensor) const {
     bool declared = false;
-    for (const MotionRecord& r : set_.records)
+    for (const Record& r : set_.records)
       for (const RecordChannel& c : r.channels) declared = declared || (c.sensor == sensor && c.sigma);
     if (declared && !set_.tolerance) return 0.0;
     return set_.tolerance.value_or(usual_share) * first_scales(set_, fitted_).at(sensor);
@@ -298,14 +298,14 @@ class Tracer {
       squares += e.sigma * e.sigma / (scale * scale);
       ++count;
       bool own = false;
-      for (const MotionRecord& r : set_.records)
+      for (const Record& r : set_.records)
         for (const RecordChannel& c : r.channels) own = own || (c.sensor == e.sensor && c.sigma);
       declared = declared && own;
     }
     trace_.sigma = count > 0 ? std::sqrt(squares / count) : 0.0;
     trace_.noise_source = declared ? "declared" : "second_differences";
   }
-  /// Of the unit in which MotionStage::rmse is told.
+  /// Of the unit in which RecordStage::rmse is told.
   [[nodiscard]] double scale_of(const std::string& sensor) const {
     double scale = 1.0;
     bool one = true;
@@ -330,8 +330,8 @@ class Tracer {
   }
 
   struct Reached {
-    MotionFit fit;
-    MotionStage stage;
+    RecordFit fit;
+    RecordStage stage;
     Eigen::VectorXd heldout;  // residual of the records held out
     std::size_t effects = 0;  // that are in it
   };
@@ -378,13 +378,13 @@ class Tracer {
   bool drop_needless() {
     bool dropped = false;
     for (std::size_t e = 0; e + 1 < trace_.selected_effects.size() && !stop_;) {
-      const std::vector<MotionNumber>& numbers = trace_.effects[trace_.selected_effects[e]].numbers;
-      std::vector<MotionSetting> without;
+      const std::vector<RecordNumber>& numbers = trace_.effects[trace_.selected_effects[e]].numbers;
+      std::vector<RecordSetting> without;
       bool null = true;
       for (std::size_t k = 0; k < current_.settings.size(); ++k) {
-        const MotionSetting& s = current_.settings[k];
+        const RecordSetting& s = current_.settings[k];
         const bool own =
-            std::any_of(numbers.begin(), numbers.end(), [&](const MotionNumber& n) { return n.key == s.number.key; });
+            std::any_of(numbers.begin(), numbers.end(), [&](const RecordNumber& n) { return n.key == s.number.key; });
         if (!own) {
           without.push_back(s);
           continue;
@@ -395,9 +395,9 @@ class Tracer {
       }
       bool needless = false;
       if (null) {
-        MotionFitOptions options;
+        RecordFitOptions options;
         options.progress = asked();
-        MotionFit fit = fit_motion(model_, data_, without, options);
+        RecordFit fit = fit_motion(model_, data_, without, options);
         const double rows = std::max(1.0, static_cast<double>(data_.rows));
         const auto count = static_cast<double>(current_.settings.size() - without.size());
         needless = fit.report.usable() && fit.chi2 - current_.chi2 <= count * std::log(rows) * current_.chi2 / rows;
@@ -420,8 +420,8 @@ class Tracer {
   /// The next round begins at the sizes that were found to show, less as much as the residual has fallen.
   void remember_sizes(const RoundResult& round) {
     const double fallen = round.better.residual.norm() / std::max(1e-300, current_.residual.norm());
-    for (const MotionCandidate& c : round.round.candidates) {
-      std::vector<MotionNumber>& numbers = trace_.effects[c.score.effect].numbers;
+    for (const RecordCandidate& c : round.round.candidates) {
+      std::vector<RecordNumber>& numbers = trace_.effects[c.score.effect].numbers;
       for (std::size_t k = 0; k < c.score.numbers.size(); ++k)
         if (c.score.scale[k] > 0.0) numbers[c.score.numbers[k]].scale = fallen * c.score.scale[k];
     }
@@ -430,7 +430,7 @@ class Tracer {
   void look_for_effects() {
     trace_.effects = motion_effects(model_);
     // Numbers that are fitted already are no effects.
-    std::erase_if(trace_.effects, [this](const MotionEffect& e) {
+    std::erase_if(trace_.effects, [this](const RecordEffect& e) {
       return std::any_of(set_.free.begin(), set_.free.end(),
                          [&](const FreeNumber& f) { return f.key.starts_with(e.numbers.front().key); });
     });
@@ -445,19 +445,19 @@ class Tracer {
       if (heldout_data_.rows > 0) {
         input.heldout_data = &heldout_data_;
         input.heldout_now = heldout_residual_.squaredNorm();
-        input.heldout = [this](const MotionFit& fit) {
-          const std::optional<MotionFit> there = on_heldout(fit, {});
+        input.heldout = [this](const RecordFit& fit) {
+          const std::optional<RecordFit> there = on_heldout(fit, {});
           return there && there->report.usable() ? there->residual : Eigen::VectorXd();
         };
       }
       RoundResult round;
       if (out_of_step(data_, current_)) {
         // From the declared numbers: those fitted have gone astray with the records.
-        std::vector<MotionSetting> start = current_.settings;
-        for (MotionSetting& s : start) s.value = s.number.declared;
+        std::vector<RecordSetting> start = current_.settings;
+        for (RecordSetting& s : start) s.value = s.number.declared;
         round = round_from_beginnings(input, start);
       }
-      if (!round.added && !stop_) round = motion_round(input);
+      if (!round.added && !stop_) round = record_round(input);
       if (stop_) return;
       trace_.rounds.push_back(round.round);
       if (!round.added) break;
@@ -521,13 +521,13 @@ class Tracer {
 
   /// What to measure next: what settles the members of the class of the effect that was named last among those that are not alone.
   void propose() {
-    for (const MotionRound& round : trace_.rounds) {
+    for (const RecordRound& round : trace_.rounds) {
       if (round.added.empty() || round.classes.empty()) continue;
       for (const std::vector<std::string>& members : round.classes) {
         if (members.size() < 2 || std::find(members.begin(), members.end(), round.added) == members.end()) continue;
         trace_.next_separates = members;
         trace_.next_measurement.clear();
-        for (const MotionEffect& e : trace_.effects)
+        for (const RecordEffect& e : trace_.effects)
           if (std::find(members.begin(), members.end(), e.label()) != members.end())
             trace_.next_measurement +=
                 fmt::format("{}{}: {}", trace_.next_measurement.empty() ? "" : "; ", e.label(), e.independent_check);
@@ -536,25 +536,25 @@ class Tracer {
   }
 
   const RecordSet& set_;
-  const MotionTraceOptions& options_;
+  const RecordTraceOptions& options_;
   bool stop_ = false;
-  MotionModel model_;
+  RecordModel model_;
   std::vector<std::size_t> fitted_, heldout_;
   ChannelScales scales_;
-  MotionData data_, heldout_data_;
-  std::vector<MotionSetting> base_settings_;
-  std::optional<std::vector<MotionSetting>> heldout_starts_;  // of the numbers of these records for themselves
+  RecordData data_, heldout_data_;
+  std::vector<RecordSetting> base_settings_;
+  std::optional<std::vector<RecordSetting>> heldout_starts_;  // of the numbers of these records for themselves
   Eigen::MatrixXd heldout_jacobian_;                          // there
-  MotionFit current_;
+  RecordFit current_;
   std::vector<std::size_t> rounds_of_;  // of every selected effect the round that named it
   Eigen::VectorXd heldout_residual_;    // of the last stage
   bool omnibus_ = false;                // what the base leaves is more than noise, whatever the effects' own tests say
-  MotionTrace trace_;
+  RecordTrace trace_;
 };
 
 }  // namespace
 
-MotionTrace trace_records(const RecordSet& set, const MotionTraceOptions& options) {
+RecordTrace trace_records(const RecordSet& set, const RecordTraceOptions& options) {
   return Tracer(set, options).run();
 }
 

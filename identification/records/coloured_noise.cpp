@@ -63,7 +63,7 @@ Autoregression burg(const std::vector<Eigen::VectorXd>& stretches) {
 
 }  // namespace
 
-ColouredNoise coloured_noise(const MotionData& data, const Eigen::VectorXd& residual, Eigen::Index taken) {
+ColouredNoise coloured_noise(const RecordData& data, const Eigen::VectorXd& residual, Eigen::Index taken) {
   std::map<std::string, std::vector<Eigen::VectorXd>> by_sensor;
   for (const ResidualPiece& p : data.pieces)
     by_sensor[data.set->records[p.record].channels[p.channel].sensor].emplace_back(residual.segment(p.begin, p.size));
@@ -80,7 +80,7 @@ ColouredNoise coloured_noise(const MotionData& data, const Eigen::VectorXd& resi
   return noise;
 }
 
-Eigen::VectorXd whitened(const MotionData& data, const ColouredNoise& noise, const Eigen::VectorXd& residual) {
+Eigen::VectorXd whitened(const RecordData& data, const ColouredNoise& noise, const Eigen::VectorXd& residual) {
   Eigen::VectorXd white(residual.size());
   for (std::size_t k = 0; k < data.pieces.size(); ++k) {
     const ResidualPiece& p = data.pieces[k];
@@ -95,7 +95,7 @@ Eigen::VectorXd whitened(const MotionData& data, const ColouredNoise& noise, con
   return white;
 }
 
-Eigen::MatrixXd coloured(const MotionData& data, const ColouredNoise& noise, const Eigen::MatrixXd& columns) {
+Eigen::MatrixXd coloured(const RecordData& data, const ColouredNoise& noise, const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd result(columns.rows(), columns.cols());
   for (std::size_t k = 0; k < data.pieces.size(); ++k) {
     const ResidualPiece& p = data.pieces[k];
@@ -112,7 +112,7 @@ Eigen::MatrixXd coloured(const MotionData& data, const ColouredNoise& noise, con
   return result;
 }
 
-Eigen::MatrixXd sandwich(const MotionData& data, const ColouredNoise& noise, const Eigen::MatrixXd& jacobian) {
+Eigen::MatrixXd sandwich(const RecordData& data, const ColouredNoise& noise, const Eigen::MatrixXd& jacobian) {
   const Eigen::Index n = jacobian.cols();
   if (n == 0) return {};
   Eigen::VectorXd norms = jacobian.colwise().norm().transpose();

@@ -19,13 +19,13 @@ constexpr double first_target = 1.0;  // deviates: one on the way to the limit
 const double limit_deviate = std::sqrt(profile_rise_95);
 
 /// Whether a number stands at one of its bounds.
-bool at_bound(const MotionSetting& s) {
+bool at_bound(const RecordSetting& s) {
   return s.value <= s.number.lower || s.value >= s.number.upper;
 }
 
 /// Variance by noise of the fall of the sum of squares that one number brings: with g the column, those of the others taken out,
 /// g' Sigma g / g' g. theory.md (I.27)
-double rise_unit(const MotionData& data, const MotionFit& fit, Eigen::Index number) {
+double rise_unit(const RecordData& data, const RecordFit& fit, Eigen::Index number) {
   std::vector<Eigen::Index> others;
   for (Eigen::Index k = 0; k < fit.jacobian.cols(); ++k)
     if (k != number && fit.jacobian.col(k).norm() > 0.0 && !at_bound(fit.settings[static_cast<std::size_t>(k)]))
@@ -46,8 +46,8 @@ double rise_unit(const MotionData& data, const MotionFit& fit, Eigen::Index numb
 /// The way outward on one side.
 class Side {
  public:
-  Side(const MotionModel& model, const MotionData& data, const MotionFit& fit, std::size_t number,
-       const MotionFitOptions& options, double unit, double direction)
+  Side(const RecordModel& model, const RecordData& data, const RecordFit& fit, std::size_t number,
+       const RecordFitOptions& options, double unit, double direction)
       : model_(model),
         data_(data),
         fit_(fit),
@@ -62,7 +62,7 @@ class Side {
   }
 
   ProfileSide walk(double first_step) {
-    const MotionSetting& own = fit_.settings[number_];
+    const RecordSetting& own = fit_.settings[number_];
     const double bound = direction_ < 0.0 ? own.number.lower : own.number.upper;
     double value = own.value, deviate = 0.0, step = first_step;
     std::optional<double> barrier;  // nearest value that cannot be simulated
@@ -109,7 +109,7 @@ class Side {
   /// Root of the rise where the number is held, the others fitted anew; nothing where that cannot be simulated.
   std::optional<double> deviate_at(double value) {
     options_.fixed.back().value = value;
-    const MotionFit there = fit_motion(model_, data_, others_, options_);
+    const RecordFit there = fit_motion(model_, data_, others_, options_);
     if (there.residual.size() == 0) return std::nullopt;
     others_ = there.settings;
     options_.first_jacobian = there.jacobian;
@@ -138,23 +138,23 @@ class Side {
     return below + (above - below) * (limit_deviate - below_deviate) / (above_deviate - below_deviate);
   }
 
-  const MotionModel& model_;
-  const MotionData& data_;
-  const MotionFit& fit_;
+  const RecordModel& model_;
+  const RecordData& data_;
+  const RecordFit& fit_;
   std::size_t number_;
-  MotionFitOptions options_;
+  RecordFitOptions options_;
   double unit_, direction_;
-  std::vector<MotionSetting> others_;
+  std::vector<RecordSetting> others_;
 };
 
 }  // namespace
 
-Profile profile_of(const MotionModel& model, const MotionData& data, const MotionFit& fit, std::size_t number,
-                   const MotionFitOptions& options) {
+Profile profile_of(const RecordModel& model, const RecordData& data, const RecordFit& fit, std::size_t number,
+                   const RecordFitOptions& options) {
   const auto column = static_cast<Eigen::Index>(number);
   if (number >= fit.settings.size() || column >= fit.jacobian.cols())
     throw std::invalid_argument("profile_of: no such number, or a fit without its jacobian");
-  const MotionSetting& own = fit.settings[number];
+  const RecordSetting& own = fit.settings[number];
   Profile profile;
   profile.key = own.number.key;
   profile.unit = own.number.unit;

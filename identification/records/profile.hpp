@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/records/motion_fit.hpp"
+#include "identification/records/record_fit.hpp"
 
 #include <cstddef>
 #include <limits>
@@ -46,7 +46,7 @@ inline constexpr double profile_rise_95 = 3.841458820694124;
 /// Along one number of a fit, outward to both sides: it is held and all others are fitted anew, from where they were at the point before. The
 /// rise is told in units of g' Sigma g / g' g, the variance that residuals that hang together give it (g: the number's column, those of the others
 /// taken out). In a linear model the interval is that of the covariance. number: index in fit.settings. The fit must have its jacobian.
-[[nodiscard]] Profile profile_of(const MotionModel& model, const MotionData& data, const MotionFit& fit,
-                                 std::size_t number, const MotionFitOptions& options = {});
+[[nodiscard]] Profile profile_of(const RecordModel& model, const RecordData& data, const RecordFit& fit,
+                                 std::size_t number, const RecordFitOptions& options = {});
 
 }  // namespace snare::identification

@@ -183,7 +183,7 @@ RecordReadings read_record_csv(const RecordCsv& csv) {
   return readings;
 }
 
-std::vector<std::string> read_into(const std::function<RecordReadings()>& read, MotionRecord& record) {
+std::vector<std::string> read_into(const std::function<RecordReadings()>& read, Record& record) {
   std::vector<std::string> problems;
   try {
     const RecordReadings readings = read();

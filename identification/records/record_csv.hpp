@@ -41,6 +41,6 @@ struct RecordReadings {
 inline constexpr std::size_t fewest_readings = 20;
 
 /// Puts what `read` gives into a record; or says what is wrong.
-[[nodiscard]] std::vector<std::string> read_into(const std::function<RecordReadings()>& read, MotionRecord& record);
+[[nodiscard]] std::vector<std::string> read_into(const std::function<RecordReadings()>& read, Record& record);
 
 }  // namespace snare::identification

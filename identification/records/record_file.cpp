@@ -3,8 +3,8 @@
 #include "base/files.hpp"
 #include "base/plain_name.hpp"
 #include "base/toml_reader.hpp"
-#include "identification/records/motion_number.hpp"
 #include "identification/records/record_csv.hpp"
+#include "identification/records/record_number.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -66,10 +66,10 @@ double number_by_column(const TomlTable& table, const char* key, const std::stri
 }
 
 void read_record(const TomlTable& table, const TomlNode* node, const std::filesystem::path& folder, RecordSet& set) {
-  MotionRecord record;
+  Record record;
   record.name = table.text("name");
   base::require_plain_name(table, "name", record.name);
-  for (const MotionRecord& other : set.records)
+  for (const Record& other : set.records)
     if (other.name == record.name) table.fail("name", "is taken by another record");
   record.set = read_set(table, node);
   RecordCsv csv;
@@ -178,17 +178,17 @@ void read_fit(const TomlTable& table, const TomlNode* node, RecordSet& set) {
   }
   const std::vector<std::string> heldout = table.texts_or_none("heldout");
   for (std::size_t k = 0; k < heldout.size(); ++k) {
-    const auto record = std::find_if(set.records.begin(), set.records.end(),
-                                     [&](const MotionRecord& r) { return r.name == heldout[k]; });
+    const auto record =
+        std::find_if(set.records.begin(), set.records.end(), [&](const Record& r) { return r.name == heldout[k]; });
     if (record == set.records.end())
       table.fail_element("heldout", k, "must be the name of a record");
     else
       record->heldout = true;
   }
-  const auto fitted = [](const MotionRecord& r) {
+  const auto fitted = [](const Record& r) {
     return r.heldout || std::any_of(r.channels.begin(), r.channels.end(), [](const auto& c) { return c.fitted; });
   };
-  for (const MotionRecord& r : set.records)
+  for (const Record& r : set.records)
     if (!fitted(r))
       table.fail("heldout", fmt::format("must name {}, or its `watched` must leave a column to be fitted", r.name));
   if (!set.records.empty() && set.used(false).empty()) table.fail("heldout", "must leave a record to be fitted");

@@ -30,7 +30,7 @@ struct RecordFilter {
 };
 
 /// A record in time of one run of the scenario.
-struct MotionRecord {
+struct Record {
   std::string name;
   std::vector<base::Override> set;  ///< keys of the scenario that were otherwise in this run
   Eigen::VectorXd times;            ///< on the scenario's clock [s], ascending, >= 0
@@ -60,7 +60,7 @@ struct RecordSet {
   std::filesystem::path file, scenario;
   std::string title, source;
   std::vector<base::Override> set;  ///< of the scenario, for all records: --set scenario.KEY=VALUE
-  std::vector<MotionRecord> records;
+  std::vector<Record> records;
   std::vector<FreeNumber> free;
   FitMethod method = FitMethod::gauss_newton;
   double simplex_change = 0.0;      ///< relative change of the numbers with which the simplex ends, (I.30); 0: none

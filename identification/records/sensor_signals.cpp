@@ -53,7 +53,7 @@ SensorRun read_sensors_of(const std::vector<scenario::Sensor>& sensors, const co
   return run;
 }
 
-std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord& record, Eigen::Index count,
+std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const Record& record, Eigen::Index count,
                                         const std::map<std::string, std::string>& columns,
                                         const SignalChanges& changes) {
   std::vector<Eigen::VectorXd> result(record.channels.size());

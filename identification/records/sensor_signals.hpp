@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/records/motion_number.hpp"
+#include "identification/records/record_number.hpp"
 #include "identification/records/record_set.hpp"
 #include "scenario/sensors.hpp"
 
@@ -22,8 +22,7 @@ struct SensorRun {
 
 /// The first `count` readings, in the units of their columns, at the times of a record, with changes: theory.md (I.23). Between readings of a sensor
 /// on the cubic through four; before the first one and behind the last one they stand. columns: full names of the channels' sensors.
-[[nodiscard]] std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const MotionRecord& record,
-                                                      Eigen::Index count,
+[[nodiscard]] std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const Record& record, Eigen::Index count,
                                                       const std::map<std::string, std::string>& columns,
                                                       const SignalChanges& changes);
 

@@ -12,10 +12,10 @@ namespace snare::identification {
 namespace {
 
 struct Search {
-  const MotionModel& model;
-  const MotionData& data;
-  const MotionFitOptions& options;
-  std::vector<MotionSetting> settings;
+  const RecordModel& model;
+  const RecordData& data;
+  const RecordFitOptions& options;
+  std::vector<RecordSetting> settings;
   nlopt_opt opt = nullptr;
   int evaluations = 0;
   std::vector<double> best = {};  // numbers over their declared values, of the least sum so far
@@ -27,7 +27,7 @@ struct Search {
 /// Honda's measure of a step to a better place: |p - p'| over |p'| with p' the place before, numbers over their declared values.   theory.md (I.30)
 double moves_to(Search& search, double chi2) {
   std::vector<double> there;
-  for (const MotionSetting& s : search.settings)
+  for (const RecordSetting& s : search.settings)
     there.push_back(s.value / (s.number.declared != 0.0 ? std::abs(s.number.declared) : s.number.scale));
   double moved = 0.0, size = 0.0;
   for (std::size_t k = 0; k < search.best.size(); ++k) {
@@ -61,14 +61,14 @@ double chi2_at(unsigned count, const double* x, double* /*gradient*/, void* cont
 
 }  // namespace
 
-void nelder_mead(const MotionModel& model, const MotionData& data, const MotionFitOptions& options, MotionFit& fit) {
+void nelder_mead(const RecordModel& model, const RecordData& data, const RecordFitOptions& options, RecordFit& fit) {
   const auto count = static_cast<unsigned>(fit.settings.size());
   const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(nlopt_create(NLOPT_LN_NELDERMEAD, count), nlopt_destroy);
   Search search{model, data, options, fit.settings, opt.get(), 0, {}, std::numeric_limits<double>::max(), false, {}};
   std::vector<double> x, lower, upper, step;
   constexpr double wide = 10.0;  // scales: a tenth of a declared number
-  for (const MotionSetting& s : fit.settings) {
-    const MotionNumber& n = s.number;
+  for (const RecordSetting& s : fit.settings) {
+    const RecordNumber& n = s.number;
     x.push_back(s.value / n.scale);
     lower.push_back(std::isfinite(n.lower) ? n.lower / n.scale : -HUGE_VAL);
     upper.push_back(std::isfinite(n.upper) ? n.upper / n.scale : HUGE_VAL);
@@ -88,7 +88,7 @@ void nelder_mead(const MotionModel& model, const MotionData& data, const MotionF
   fit.iterations = search.evaluations;
   if (search.hardly_moves)
     for (unsigned k = 0; k < count; ++k) {  // of a stop the library gives back the last place but one
-      const MotionNumber& n = fit.settings[k].number;
+      const RecordNumber& n = fit.settings[k].number;
       fit.settings[k].value = search.best[k] * (n.declared != 0.0 ? std::abs(n.declared) : n.scale);
     }
   if (search.hardly_moves) return;

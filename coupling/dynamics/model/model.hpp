@@ -20,8 +20,10 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -97,6 +99,10 @@ struct WireFacts {
   WireTightness tightness;
 };
 
+/// Kinds of what presses, in the order in which results count all of it: shapes on wires, point laws, pairs of wires, wires
+/// that laws stand for on their shafts, bodies.
+enum class ContactKind { shape, point_law, wire_pair, law_wire, bodies };
+
 /// Everything that moves and acts. Indices count within these lists.
 struct Motion {
   std::vector<MotionWire> wires;
@@ -123,8 +129,24 @@ struct Motion {
     return facts;
   }
 
-  /// Names of all that presses, in the order in which results count it: contacts, springs, pairs of wires, wires that laws stand for
-  /// on their shafts, contacts of bodies.
+  /// Index of the first of a kind among all that presses.
+  [[nodiscard]] std::size_t first_contact(ContactKind kind) const {
+    const std::array<std::size_t, 4> counts{contacts.size(), point_contacts.size(), wire_pairs.size(),
+                                            law_wires.size()};
+    return std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(kind), std::size_t{0});
+  }
+  /// Kind and index in its list of what presses.
+  struct ContactPlace {
+    ContactKind kind = ContactKind::shape;
+    std::size_t index = 0;
+  };
+  [[nodiscard]] ContactPlace contact_place(std::size_t contact) const {
+    for (const ContactKind kind :
+         {ContactKind::bodies, ContactKind::law_wire, ContactKind::wire_pair, ContactKind::point_law})
+      if (contact >= first_contact(kind)) return {kind, contact - first_contact(kind)};
+    return {ContactKind::shape, contact};
+  }
+  /// Names of all that presses, in the order in which results count it.
   [[nodiscard]] std::vector<std::string> contact_names() const {
     std::vector<std::string> names;
     for (const MotionContact& c : contacts) names.push_back(c.name);

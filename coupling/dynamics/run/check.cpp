@@ -14,6 +14,10 @@ namespace snare::coupling {
 
 namespace {
 
+bool presses_on_body(ContactKind kind) {
+  return kind == ContactKind::shape || kind == ContactKind::law_wire || kind == ContactKind::bodies;
+}
+
 void validate_friction(Complaints& c, const std::string& key, const MotionFriction& f) {
   const auto not_negative = [&](const std::string& name, double value) {
     c.require(std::isfinite(value) && value >= 0.0, key + name, value, "must be >= 0");
@@ -142,9 +146,7 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
       positive(b.name + ".robot.delay", b.robot->delay);
       for (const MotionRobot::Measured& m : b.robot->measured)
         c.require(m.contact >= 0 && m.contact < static_cast<int>(motion.contact_names().size()) &&
-                      (base::at(m.contact) < motion.contacts.size() ||
-                       base::at(m.contact) >=
-                           motion.contacts.size() + motion.point_contacts.size() + motion.wire_pairs.size()),
+                      presses_on_body(motion.contact_place(base::at(m.contact)).kind),
                   b.name + ".robot.contact", m.contact, "must be the index of a contact of a body");
     }
     c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation", b.start.orientation.norm(),

@@ -1,7 +1,7 @@
 // Records of bodies whose motion has a closed form: a free body under a steady moment, a body on a spring.
 #include "identification/motion_tracing/trace_records.hpp"
-#include "identification/records/motion_model.hpp"
 #include "identification/records/record_file.hpp"
+#include "identification/records/record_model.hpp"
 #include "tests/support/folder_fixture.hpp"
 #include "tests/support/turning_craft.hpp"
 
@@ -118,7 +118,7 @@ TEST_F(FreeBodyRecords, SetTakesAVectorWithAllItsDigits) {
 }
 
 TEST_F(FreeBodyRecords, NothingIsMissingInEitherRecord) {
-  const MotionTrace trace = trace_records(read_records(craft(0.01, -0.03, "[0.0, 0.0, -0.03]")));
+  const RecordTrace trace = trace_records(read_records(craft(0.01, -0.03, "[0.0, 0.0, -0.03]")));
   ASSERT_TRUE(trace.report.usable()) << trace.report.message;
   EXPECT_EQ(trace.kind, VerdictKind::nothing_missing);
   EXPECT_NEAR(trace.base.numbers[0].value, 10.0, 4.0 * trace.base.numbers[0].stderr_);  // four deviations
@@ -127,7 +127,7 @@ TEST_F(FreeBodyRecords, NothingIsMissingInEitherRecord) {
 
 // Both crafts began 0.004 rad/s faster than each record declares. Of the spin the record shows z alone, and a zero of the gyroscope does the same.
 TEST_F(FreeBodyRecords, AnEffectAddsToWhatEachRecordDeclares) {
-  const MotionTrace trace = trace_records(read_records(craft(0.014, -0.026, "[0.0, 0.0, -0.03]")));
+  const RecordTrace trace = trace_records(read_records(craft(0.014, -0.026, "[0.0, 0.0, -0.03]")));
   ASSERT_TRUE(trace.report.usable()) << trace.report.message;
   EXPECT_EQ(trace.kind, VerdictKind::explained);
   ASSERT_EQ(trace.selected, std::vector<std::string>{"body_start_spin (craft)"});
@@ -158,8 +158,8 @@ TEST_F(FreeBodyRecords, ASensorAtItsEndIsRefused) {
 // As heavy to turn as a grain of sand the craft would turn 8000 times a second: a trial that takes 100 times the steps of the longest run is left.
 TEST_F(FreeBodyRecords, ATrialBeyondAllMeasureIsGivenUp) {
   const RecordSet set = read_records(craft(0.01, 0.02, "[0.0, 0.0, 0.02]"));
-  const MotionModel model(set);
-  std::vector<MotionSetting> settings = model.free_settings({0});
+  const RecordModel model(set);
+  std::vector<RecordSetting> settings = model.free_settings({0});
   ASSERT_EQ(settings.size(), 1u);
   settings[0].value = 1e-5;
   const RecordPrediction none = model.predict(settings, {0})[0];
@@ -171,11 +171,11 @@ TEST_F(FreeBodyRecords, ATrialBeyondAllMeasureIsGivenUp) {
 
 TEST_F(FreeBodyRecords, ARecordShorterThanTheSlowestPeriodIsSaidAndNothingIsNamed) {
   const char* stiffness = "\"bushings[fixture].translational_stiffness_N_m\"";
-  const MotionTrace longer = trace_records(read_records(spring(1.5, stiffness)));
+  const RecordTrace longer = trace_records(read_records(spring(1.5, stiffness)));
   ASSERT_TRUE(longer.report.usable()) << longer.report.message;
   EXPECT_TRUE(longer.warnings.empty());
   EXPECT_EQ(longer.kind, VerdictKind::nothing_missing);
-  const MotionTrace shorter = trace_records(read_records(spring(0.4, stiffness)));
+  const RecordTrace shorter = trace_records(read_records(spring(0.4, stiffness)));
   ASSERT_TRUE(shorter.report.usable()) << shorter.report.message;
   EXPECT_THAT(shorter.warnings, Contains(HasSubstr("less than the slowest period of the declared scenario, 1.019 s")));
   EXPECT_EQ(shorter.kind, VerdictKind::nothing_missing);
@@ -183,7 +183,7 @@ TEST_F(FreeBodyRecords, ARecordShorterThanTheSlowestPeriodIsSaidAndNothingIsName
 
 // Nothing turns: the stiffness against turning changes nothing.
 TEST_F(FreeBodyRecords, ANumberThatChangesNothingIsSaid) {
-  const MotionTrace trace = trace_records(read_records(spring(
+  const RecordTrace trace = trace_records(read_records(spring(
       1.5, "\"bushings[fixture].translational_stiffness_N_m\", \"bushings[fixture].rotational_stiffness_Nm_rad\"")));
   ASSERT_TRUE(trace.report.usable()) << trace.report.message;
   EXPECT_THAT(trace.warnings, Contains(HasSubstr("rotational_stiffness_Nm_rad is not identifiable")));

@@ -122,7 +122,7 @@ body_spin_tolerance_rad_s = 1e-9
 
 // Table 2 comes back from three steps: stiffnesses within 1 %, dampings within 5 %.
 TEST_F(SlowJointStep, ThreeAmplitudesGiveBackTheThreePieces) {
-  const MotionTrace trace = trace_records(read_records(write_all()), {.effects = false});
+  const RecordTrace trace = trace_records(read_records(write_all()), {.effects = false});
   ASSERT_TRUE(trace.report.usable()) << trace.report.message;
   ASSERT_EQ(trace.base.numbers.size(), 6u);
   for (std::size_t k = 0; k < 3; ++k) {

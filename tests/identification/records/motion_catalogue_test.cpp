@@ -1,5 +1,5 @@
 // What the catalogue of records offers for a scenario.
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 #include "identification/records/record_file.hpp"
 
 #include <gmock/gmock.h>
@@ -16,16 +16,16 @@ using testing::Not;
 
 const std::filesystem::path records = std::filesystem::path(SNARE_SOURCE_DIR) / "data/records";
 
-std::vector<std::string> labels(const std::vector<MotionEffect>& effects) {
+std::vector<std::string> labels(const std::vector<RecordEffect>& effects) {
   std::vector<std::string> all;
-  for (const MotionEffect& e : effects) all.push_back(e.label());
+  for (const RecordEffect& e : effects) all.push_back(e.label());
   return all;
 }
 
 /// Texts of the keys that an effect sets where its numbers are moved by their scales from null, one number after the other.
-std::vector<base::Override> set_by(const MotionModel& model, const MotionEffect& effect) {
+std::vector<base::Override> set_by(const RecordModel& model, const RecordEffect& effect) {
   std::vector<base::Override> overrides;
-  for (const MotionNumber& n : effect.numbers)
+  for (const RecordNumber& n : effect.numbers)
     for (base::Override& one : n.overrides(n.declared + n.scale, {model.declared(), overrides}))
       overrides.push_back(std::move(one));
   return overrides;
@@ -33,7 +33,7 @@ std::vector<base::Override> set_by(const MotionModel& model, const MotionEffect&
 
 TEST(MotionCatalogue, AsksTheWiresOfASnareTheVisitorAndTheClock) {
   const RecordSet set = read_records(records / "flight.toml");
-  const MotionModel model(set);
+  const RecordModel model(set);
   const std::vector<std::string> offered = labels(motion_effects(model));
   for (const char* label : {"wire_length (snare)", "wire_bending_stiffness (snare)", "wire_axial_stiffness (snare.rod)",
                             "wire_damping (axial)", "wire_damping (bending)", "body_centre_of_mass (htv)",
@@ -44,10 +44,10 @@ TEST(MotionCatalogue, AsksTheWiresOfASnareTheVisitorAndTheClock) {
 
 TEST(MotionCatalogue, AsksTheLinksOfAnArm) {
   const RecordSet set = read_records(records / "flight_attachment.toml");
-  const MotionModel model(set);
-  const std::vector<MotionEffect> effects = motion_effects(model);
+  const RecordModel model(set);
+  const std::vector<RecordEffect> effects = motion_effects(model);
   const auto boom = std::ranges::find_if(
-      effects, [](const MotionEffect& e) { return e.label() == "link_flexibility (rms::ssrms_boom_1)"; });
+      effects, [](const RecordEffect& e) { return e.label() == "link_flexibility (rms::ssrms_boom_1)"; });
   ASSERT_NE(boom, effects.end());
   EXPECT_TRUE(boom->one_sided);
   const std::vector<base::Override> set_to = set_by(model, *boom);
@@ -58,9 +58,9 @@ TEST(MotionCatalogue, AsksTheLinksOfAnArm) {
 // Elements of a vector that the file does not declare: it is there before they are set, and once only.
 TEST(MotionCatalogue, MovesACentreOfMassThatIsNotDeclared) {
   const RecordSet set = read_records(records / "flight.toml");
-  const MotionModel model(set);
-  const std::vector<MotionEffect> effects = motion_effects(model);
-  const auto centre = std::ranges::find(effects, std::string("body_centre_of_mass"), &MotionEffect::name);
+  const RecordModel model(set);
+  const std::vector<RecordEffect> effects = motion_effects(model);
+  const auto centre = std::ranges::find(effects, std::string("body_centre_of_mass"), &RecordEffect::name);
   ASSERT_NE(centre, effects.end());
   const std::vector<base::Override> set_to = set_by(model, *centre);
   ASSERT_EQ(set_to.size(), 4U);
@@ -73,15 +73,15 @@ TEST(MotionCatalogue, MovesACentreOfMassThatIsNotDeclared) {
 }
 
 // A joint's stiffness beside a fitted one of all joints: the effect acts on what that is, and is told as the file would have it.
-TEST(MotionModel, TellsWhatAKeyIsSetTo) {
+TEST(RecordModel, TellsWhatAKeyIsSetTo) {
   const RecordSet set = read_records(records / "flight_attachment.toml");
-  const MotionModel model(set);
-  std::vector<MotionSetting> settings = model.free_settings({0});
+  const RecordModel model(set);
+  std::vector<RecordSetting> settings = model.free_settings({0});
   ASSERT_EQ(settings.size(), 1U);
   settings[0].value = 1e6;  // declared: 1.08e6
-  const std::vector<MotionEffect> effects = motion_effects(model);
+  const std::vector<RecordEffect> effects = motion_effects(model);
   const auto elbow = std::ranges::find_if(
-      effects, [](const MotionEffect& e) { return e.label() == "joint_stiffness (rms::elbow_pitch)"; });
+      effects, [](const RecordEffect& e) { return e.label() == "joint_stiffness (rms::elbow_pitch)"; });
   ASSERT_NE(elbow, effects.end());
   settings.push_back({elbow->numbers[0], 0.3 * 1.08e6});
   EXPECT_NEAR(model.as_set(settings, 0, 1e6), 1e6, 1e-3);
@@ -89,10 +89,10 @@ TEST(MotionModel, TellsWhatAKeyIsSetTo) {
 }
 
 // What is asked of the first readings is simulated no further, and told the same but for the integration, which starts anew at other times.
-TEST(MotionModel, PredictsTheFirstReadingsAlone) {
+TEST(RecordModel, PredictsTheFirstReadingsAlone) {
   const RecordSet set = read_records(records / "flight_attachment.toml");
-  const MotionModel model(set);
-  const std::vector<MotionSetting> none;
+  const RecordModel model(set);
+  const std::vector<RecordSetting> none;
   const RecordPrediction whole = model.predict(none, {0})[0], part = model.predict(none, {0}, {10})[0];
   ASSERT_TRUE(whole.usable() && part.usable());
   for (std::size_t c = 0; c < whole.channels.size(); ++c) {

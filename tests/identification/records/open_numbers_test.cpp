@@ -73,8 +73,8 @@ free = [{}]
 )",
                                             free));
   }
-  static MotionTrace fitted(const std::filesystem::path& file) {
-    MotionTraceOptions options;
+  static RecordTrace fitted(const std::filesystem::path& file) {
+    RecordTraceOptions options;
     options.effects = false;
     return trace_records(read_records(file), options);
   }
@@ -87,7 +87,7 @@ constexpr const char* all_three =
 TEST_F(OpenNumbers, ANumberThatDoesNotActStaysWhereItIs) {
   const std::string across = "bodies[block].velocity_m_s[2]",
                     stiffness = "bushings[fixture].translational_stiffness_N_m";
-  const MotionTrace t = fitted(spring(fmt::format(R"("{}", "{}")", across, stiffness), 5.0));
+  const RecordTrace t = fitted(spring(fmt::format(R"("{}", "{}")", across, stiffness), 5.0));
   ASSERT_TRUE(t.report.usable()) << t.report.message;
   for (const auto& n : t.final.numbers) {
     if (n.key == across) EXPECT_NEAR(n.value, 0.003, 0.03);
@@ -98,7 +98,7 @@ TEST_F(OpenNumbers, ANumberThatDoesNotActStaysWhereItIs) {
 // The motion depends on k/m and c/m: from every start the quotients are the same, and no number by itself is known.
 TEST_F(OpenNumbers, MassStiffnessAndDampingScaleTogether) {
   for (const double start : {5.0, 3.5, 8.0}) {
-    const MotionTrace t = fitted(spring(all_three, start));
+    const RecordTrace t = fitted(spring(all_three, start));
     ASSERT_TRUE(t.report.usable()) << t.report.message;
     for (const TracedNumber& n : t.final.numbers) EXPECT_FALSE(n.identified || n.lower || n.upper) << n.key;
     ASSERT_EQ(t.final.open.size(), 1u);
@@ -116,7 +116,7 @@ TEST_F(OpenNumbers, MassStiffnessAndDampingScaleTogether) {
 }
 
 TEST_F(OpenNumbers, WithOneOfThemHeldTheOthersAreKnown) {
-  const MotionTrace t = fitted(spring(
+  const RecordTrace t = fitted(spring(
       R"("bushings[fixture].translational_stiffness_N_m", "bushings[fixture].translational_damping_Ns_m")", 5.0));
   ASSERT_TRUE(t.report.usable()) << t.report.message;
   for (const TracedNumber& n : t.final.numbers) EXPECT_TRUE(n.identified && n.lower && n.upper) << n.key;
@@ -126,12 +126,12 @@ TEST_F(OpenNumbers, WithOneOfThemHeldTheOthersAreKnown) {
 
 TEST_F(OpenNumbers, TheSignAndTheUnitOfASensorAreNamed) {
   const std::string key = R"("bushings[fixture].translational_stiffness_N_m")";
-  const MotionTrace turned = fitted(spring(key, 5.0, [](double x) { return -x; }));
+  const RecordTrace turned = fitted(spring(key, 5.0, [](double x) { return -x; }));
   ASSERT_FALSE(turned.findings.empty());
   EXPECT_EQ(turned.findings.front().kind, FindingKind::sign_turned);
   EXPECT_EQ(turned.findings.front().key, "place_x_mm");
   for (const double factor : {1e-3, 25.4, 1.0 / 25.4}) {
-    const MotionTrace slip = fitted(spring(key, 5.0, [factor](double x) { return factor * x; }));
+    const RecordTrace slip = fitted(spring(key, 5.0, [factor](double x) { return factor * x; }));
     ASSERT_FALSE(slip.findings.empty()) << factor;
     EXPECT_EQ(slip.findings.front().kind, FindingKind::unit_slip) << factor;
     EXPECT_NEAR(slip.findings.front().value, factor, 0.01 * factor);  // noise of 0.01 mm in 3 mm, over 100 readings
@@ -145,7 +145,7 @@ TEST_F(OpenNumbers, ANumberOnItsBoundHasNoIntervalBeyondIt) {
   std::string scenario = contents("scenario.toml");
   scenario.replace(scenario.find("200.0"), 5, "180.0");
   write("scenario.toml", scenario);
-  const MotionTrace t = fitted(file);
+  const RecordTrace t = fitted(file);
   ASSERT_TRUE(t.report.usable()) << t.report.message;
   EXPECT_EQ(t.final.numbers[0].bound, AtBound::upper);
   EXPECT_FALSE(t.final.numbers[0].upper);
@@ -187,7 +187,7 @@ TEST_F(OpenNumbers, EveryKeyHasAnAnswerOrAReason) {
   int answers = 0, refusals = 0;
   for (const std::string& key : keys) {
     try {
-      const MotionTrace t = fitted(spring("\"" + key + "\"", 5.0));
+      const RecordTrace t = fitted(spring("\"" + key + "\"", 5.0));
       ASSERT_TRUE(t.report.usable() || !t.report.message.empty()) << key;
       for (const TracedNumber& n : t.final.numbers) EXPECT_TRUE(std::isfinite(n.value)) << key;
       ++answers;

@@ -82,7 +82,7 @@ sigma = {}
 // M with w0 fitted beside it: the rise is (M - M^)^2 over the variance that the covariance has, and both intervals are one.
 TEST_F(ProfileOfATurningBody, IsTheCovarianceWhereNumbersEnterLinearly) {
   const char* key = "loads[thruster].moment_Nm[3]";
-  const MotionTrace t = trace_records(
+  const RecordTrace t = trace_records(
       read_records(
           record(0.02, fmt::format("free = [\"{0}\", \"bodies[craft].spin_rad_s[3]\"]\nprofile = [\"{0}\"]\n", key))),
       {.effects = false});
@@ -106,7 +106,7 @@ TEST_F(ProfileOfATurningBody, IsTheCovarianceWhereNumbersEnterLinearly) {
 // covariance's interval is symmetric and wrong on both sides.
 TEST_F(ProfileOfATurningBody, IsThatOfTheInverseWhereTheCovarianceMisleads) {
   constexpr double sigma = 3.3;  // deg/s: 1/J to a fifth
-  const MotionTrace t = trace_records(
+  const RecordTrace t = trace_records(
       read_records(record(
           sigma, "free = [\"bodies[craft].inertia_kg_m2[3]\"]\nprofile = [\"bodies[craft].inertia_kg_m2[3]\"]\n")),
       {.effects = false});
@@ -130,7 +130,7 @@ TEST_F(ProfileOfATurningBody, IsThatOfTheInverseWhereTheCovarianceMisleads) {
 // A moment that may not be below its declared bound, which the readings ask for: the profile ends there, the other side goes up from it.
 TEST_F(ProfileOfATurningBody, EndsAtABound) {
   const char* key = "loads[thruster].moment_Nm[3]";
-  const MotionTrace t = trace_records(
+  const RecordTrace t = trace_records(
       read_records(
           record(0.5,
                  fmt::format("free = [\"{0}\"]\nprofile = [\"{0}\"]\n[[fit.numbers]]\nkey = \"{0}\"\nlower = 0.05\n",

@@ -97,7 +97,7 @@ std::string ramp(int from, int to) {
 TEST_F(Records, FitFindsTheNumbersOfAnotherIntegrator) {
   write_swing(folder_ / "a.csv", {.inertia = 1.2e-4, .viscous = 2.0e-4}, 1);
   const RecordSet set = read_records(write("sigma = 0.02\n"));
-  const MotionTrace trace = trace_records(set, {.effects = false});
+  const RecordTrace trace = trace_records(set, {.effects = false});
   ASSERT_TRUE(trace.report.usable()) << trace.report.message;
   const double truth[] = {1.2e-4, 2.0e-4};
   for (std::size_t k = 0; k < 2; ++k)
@@ -108,8 +108,8 @@ TEST_F(Records, FitFindsTheNumbersOfAnotherIntegrator) {
 
 TEST_F(Records, SimplexFindsWhatGaussNewtonFindsWithMoreSimulations) {
   write_swing(folder_ / "a.csv", {.inertia = 1.2e-4, .viscous = 2.0e-4}, 2);
-  const MotionTrace newton = trace_records(read_records(write("sigma = 0.02\n")), {.effects = false});
-  const MotionTrace simplex =
+  const RecordTrace newton = trace_records(read_records(write("sigma = 0.02\n")), {.effects = false});
+  const RecordTrace simplex =
       trace_records(read_records(write("sigma = 0.02\n", "method = \"nelder_mead\"\n")), {.effects = false});
   ASSERT_TRUE(newton.report.usable() && simplex.report.usable());
   for (std::size_t k = 0; k < 2; ++k)
@@ -121,7 +121,7 @@ TEST_F(Records, SimplexFindsWhatGaussNewtonFindsWithMoreSimulations) {
 
 TEST_F(Records, CoulombFrictionIsNamed) {
   write_swing(folder_ / "a.csv", {.coulomb = 5e-4}, 3);
-  const MotionTrace trace = trace_records(read_records(write("sigma = 0.02\n", "most_effects = 1\n")));
+  const RecordTrace trace = trace_records(read_records(write("sigma = 0.02\n", "most_effects = 1\n")));
   ASSERT_TRUE(trace.report.usable()) << trace.report.message;
   ASSERT_EQ(trace.selected.size(), 1u);
   EXPECT_EQ(trace.selected[0], "joint_coulomb_friction (pendulum::bearing)");
@@ -131,7 +131,7 @@ TEST_F(Records, CoulombFrictionIsNamed) {
 // Friction that is larger at rest, where the speed is declared at which it has fallen off; else a late sensor is as good.
 TEST_F(Records, FrictionThatFallsWithTheSpeedIsNamed) {
   write_swing(folder_ / "a.csv", {.coulomb = 4e-4, .breakaway_excess = 2e-3, .falls_off = 2.0}, 4);
-  const MotionTrace trace =
+  const RecordTrace trace =
       trace_records(read_records(write("sigma = 0.02\nset = { \"arms[pendulum].joint.bearing.coulomb_Nm\" = 4e-4, "
                                        "\"arms[pendulum].joint.bearing.stribeck_velocity_rad_s\" = 2.0 }\n",
                                        "most_effects = 1\n")));
@@ -145,8 +145,8 @@ TEST_F(Records, FrictionThatFallsWithTheSpeedIsNamed) {
 TEST_F(Records, SimplexEndsWhereItHardlyMoves) {
   write_swing(folder_ / "a.csv", {.inertia = 1.2e-4, .viscous = 2.0e-4}, 5);
   const std::string method = "method = \"nelder_mead\"\n";
-  const MotionTrace far = trace_records(read_records(write("sigma = 0.02\n", method)), {.effects = false});
-  const MotionTrace near =
+  const RecordTrace far = trace_records(read_records(write("sigma = 0.02\n", method)), {.effects = false});
+  const RecordTrace near =
       trace_records(read_records(write("sigma = 0.02\n", method + "simplex_change = 1e-2\n")), {.effects = false});
   ASSERT_TRUE(far.report.usable() && near.report.usable());
   EXPECT_LT(near.fit_simulations, far.fit_simulations);
@@ -157,7 +157,7 @@ TEST_F(Records, SimplexEndsWhereItHardlyMoves) {
 // A record of a swing half again as long: the numbers that are declared lose step with it in the second swing.
 TEST_F(Records, LostStepIsFoundFromTheBeginnings) {
   write_swing(folder_ / "a.csv", {.inertia = 4.0e-3, .viscous = 2.0e-4}, 6);
-  const MotionTrace trace = trace_records(read_records(write("sigma = 0.02\n")), {.effects = false});
+  const RecordTrace trace = trace_records(read_records(write("sigma = 0.02\n")), {.effects = false});
   ASSERT_TRUE(trace.report.usable()) << trace.report.message;
   EXPECT_NEAR(trace.base.numbers[0].value, 4.0e-3, 1e-2 * 4.0e-3);
   EXPECT_NEAR(trace.base.chi2_dof, 1.0, 0.4);
@@ -166,7 +166,7 @@ TEST_F(Records, LostStepIsFoundFromTheBeginnings) {
 // The same record by a model whose rod is a tenth heavier: the inertia takes what the weight does not.
 TEST_F(Records, FamiliesTellWhatOtherModelsFind) {
   write_swing(folder_ / "a.csv", {}, 7);
-  const MotionTrace trace = trace_records(
+  const RecordTrace trace = trace_records(
       read_records(
           write("sigma = 0.02\n",
                 "[[fit.families]]\nname = \"heavier\"\nset = { \"arms[pendulum].link.rod.mass_kg\" = 0.16258 }\n"
@@ -223,11 +223,11 @@ TEST_F(Records, BadRecordsAreRefusedWithEverything) {
 // Of an autoregression of known coefficients: Burg's are within four of their deviations, sqrt((1 - a^2)/n).
 TEST(ColouredNoise, FindsAnAutoregression) {
   RecordSet set;
-  MotionRecord record;
+  Record record;
   record.channels.emplace_back().sensor = "s";
   set.records.push_back(record);
   constexpr Eigen::Index n = 4000;
-  MotionData data;
+  RecordData data;
   data.set = &set;
   data.records = {0};
   data.pieces = {{0, 0, 0, n, 1.0}};

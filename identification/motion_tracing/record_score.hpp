@@ -1,8 +1,8 @@
 #pragma once
 
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 #include "identification/records/coloured_noise.hpp"
-#include "identification/records/motion_fit.hpp"
+#include "identification/records/record_fit.hpp"
 
 #include <optional>
 #include <string>
@@ -11,7 +11,7 @@
 namespace snare::identification {
 
 /// Score test of one effect beside a fitted scenario.                                              theory.md (I.22)
-struct MotionScore {
+struct RecordScore {
   std::size_t effect = 0;    ///< index in the list
   std::string unobservable;  ///< why the records cannot show it; empty: they can
   double p = 1.0;            ///< of the score, one-sided where the effect is
@@ -29,15 +29,15 @@ struct MotionScore {
 };
 
 /// What the tests of one round rest on.
-struct MotionScores {
-  std::vector<MotionScore> scores;
+struct RecordScores {
+  std::vector<RecordScore> scores;
   ColouredNoise noise;  ///< of what is left when all columns at once are taken out: of that no effect is a part
 };
 
 /// Tests of all effects at a level `significance` (for what would be detected). The size of the trial follows from what it changes:
 /// between a fiftieth of the residual and as much as it.
-[[nodiscard]] MotionScores score_motion(const MotionModel& model, const MotionData& data, const MotionFit& fit,
-                                        const std::vector<MotionSetting>& fixed,
-                                        const std::vector<MotionEffect>& effects, double significance);
+[[nodiscard]] RecordScores score_motion(const RecordModel& model, const RecordData& data, const RecordFit& fit,
+                                        const std::vector<RecordSetting>& fixed,
+                                        const std::vector<RecordEffect>& effects, double significance);
 
 }  // namespace snare::identification

@@ -1,4 +1,4 @@
-#include "identification/motion_tracing/motion_score.hpp"
+#include "identification/motion_tracing/record_score.hpp"
 
 #include "identification/fitting/statistics.hpp"
 #include "identification/tracing/projection.hpp"
@@ -25,14 +25,14 @@ constexpr double least_change = 0.02, most_change = 1.0, wanted_change = 0.2;  /
 constexpr int most_passes = 3;
 
 /// One pass over the trials that are not settled.
-void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit& fit,
-               const std::vector<MotionSetting>& all, const std::vector<MotionEffect>& effects,
+void try_sizes(const RecordModel& model, const RecordData& data, const RecordFit& fit,
+               const std::vector<RecordSetting>& all, const std::vector<RecordEffect>& effects,
                std::vector<Trial>& trials) {
-  std::vector<std::vector<MotionSetting>> points;
+  std::vector<std::vector<RecordSetting>> points;
   std::vector<std::pair<std::size_t, double>> of;  // trial, step
   for (std::size_t t = 0; t < trials.size(); ++t) {
     if (trials[t].settled) continue;
-    const MotionNumber& n = effects[trials[t].effect].numbers[trials[t].number];
+    const RecordNumber& n = effects[trials[t].effect].numbers[trials[t].number];
     const double step = trial_share * trials[t].scale;
     // To one side: the refit of what is promising takes the rest.
     for (const double move : {step, -step}) {
@@ -76,10 +76,10 @@ void try_sizes(const MotionModel& model, const MotionData& data, const MotionFit
 
 /// Derivatives by the fitted numbers but those that stand at a bound against which the readings push them: what such a number would take beyond it is
 /// there for effects to take.
-Eigen::MatrixXd free_to_move(const MotionFit& fit) {
+Eigen::MatrixXd free_to_move(const RecordFit& fit) {
   std::vector<Eigen::Index> moving;
   for (Eigen::Index k = 0; k < fit.jacobian.cols(); ++k) {
-    const MotionSetting& s = fit.settings[static_cast<std::size_t>(k)];
+    const RecordSetting& s = fit.settings[static_cast<std::size_t>(k)];
     const double pull = fit.jacobian.col(k).dot(fit.residual);  // > 0: a larger number leaves less
     const bool held = (s.value <= s.number.lower && pull <= 0.0) || (s.value >= s.number.upper && pull >= 0.0);
     if (!held) moving.push_back(k);
@@ -89,7 +89,7 @@ Eigen::MatrixXd free_to_move(const MotionFit& fit) {
 
 /// Columns with the fitted ones out, of the numbers that do what neither these nor the numbers before them do. Of a vector the components that
 /// change the records a hundred times less than another one are left out: at sizes that show them the motion is another.
-void keep_independent(const Projection& projection, const std::vector<const Trial*>& seen, MotionScore& score) {
+void keep_independent(const Projection& projection, const std::vector<const Trial*>& seen, RecordScore& score) {
   constexpr double absorbed = 1e-3;  // of the change: below it others do the same
   constexpr double hardly = 0.01;
   std::vector<Eigen::VectorXd> kept, whole, directions;
@@ -118,8 +118,8 @@ void keep_independent(const Projection& projection, const std::vector<const Tria
 /// The score of one effect from its columns with the fitted ones out, and their coloured counterparts.
 /// power: variance of what is left with all columns out. What smooth columns take out is missing there, and an autoregression of the rest takes
 /// the noise for smaller where they are: no score has less than the variance that white noise of that power would give it.
-void judge(const MotionData& data, const ColouredNoise& noise, double power, const Eigen::VectorXd& residual,
-           const MotionEffect& effect, MotionScore& score) {
+void judge(const RecordData& data, const ColouredNoise& noise, double power, const Eigen::VectorXd& residual,
+           const RecordEffect& effect, RecordScore& score) {
   const Eigen::MatrixXd& g = score.columns;
   const Eigen::VectorXd u = g.transpose() * residual;
   const Eigen::MatrixXd through = coloured(data, noise, g);
@@ -146,7 +146,7 @@ void judge(const MotionData& data, const ColouredNoise& noise, double power, con
     score.z = std::sqrt(statistic);
   }
   for (Eigen::Index i = 0; i < k; ++i) {
-    const MotionNumber& n = effect.numbers[score.numbers[static_cast<std::size_t>(i)]];
+    const RecordNumber& n = effect.numbers[score.numbers[static_cast<std::size_t>(i)]];
     const double scale = score.scale[static_cast<std::size_t>(i)];
     score.start.push_back(std::clamp(n.declared + step[i] * scale, n.lower, n.upper));
   }
@@ -154,22 +154,22 @@ void judge(const MotionData& data, const ColouredNoise& noise, double power, con
 
 }  // namespace
 
-MotionScores score_motion(const MotionModel& model, const MotionData& data, const MotionFit& fit,
-                          const std::vector<MotionSetting>& fixed, const std::vector<MotionEffect>& effects,
+RecordScores score_motion(const RecordModel& model, const RecordData& data, const RecordFit& fit,
+                          const std::vector<RecordSetting>& fixed, const std::vector<RecordEffect>& effects,
                           double significance) {
-  const std::vector<MotionSetting> all = together(fit.settings, fixed);
+  const std::vector<RecordSetting> all = together(fit.settings, fixed);
   std::vector<Trial> trials;
   for (std::size_t e = 0; e < effects.size(); ++e)
     for (std::size_t n = 0; n < effects[e].numbers.size(); ++n)
       trials.push_back({e, n, effects[e].numbers[n].scale, false, {}});
   for (int pass = 0; pass < most_passes && !model.stopped(); ++pass) try_sizes(model, data, fit, all, effects, trials);
 
-  MotionScores result;
+  RecordScores result;
   const Eigen::MatrixXd fitted = free_to_move(fit);
   const Projection projection(fitted);
   std::vector<Eigen::VectorXd> usable;
   for (std::size_t e = 0; e < effects.size(); ++e) {
-    MotionScore score;
+    RecordScore score;
     score.effect = e;
     std::vector<const Trial*> seen;
     double before = 0.0;
@@ -204,7 +204,7 @@ MotionScores score_motion(const MotionModel& model, const MotionData& data, cons
   const double power = std::max(1e-300, left.squaredNorm() / std::max(1.0, static_cast<double>(data.rows - columns)));
 
   std::vector<double> p;
-  for (MotionScore& score : result.scores) {
+  for (RecordScore& score : result.scores) {
     if (score.unobservable.empty()) judge(data, result.noise, power, fit.residual, effects[score.effect], score);
     if (score.unobservable.empty()) p.push_back(score.p);
   }
@@ -212,7 +212,7 @@ MotionScores score_motion(const MotionModel& model, const MotionData& data, cons
   const double needed =
       normal_quantile(significance / std::max<double>(1.0, static_cast<double>(p.size()))) + 1.2816;  // nine of ten
   std::size_t next = 0;
-  for (MotionScore& score : result.scores) {
+  for (RecordScore& score : result.scores) {
     if (!score.unobservable.empty()) continue;
     score.adjusted_p = adjusted[next++];
     if (score.columns.cols() != 1) continue;

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 #include "identification/motion_tracing/leftover.hpp"
-#include "identification/motion_tracing/motion_score.hpp"
-#include "identification/records/motion_fit.hpp"
+#include "identification/motion_tracing/record_score.hpp"
 #include "identification/records/profile.hpp"
+#include "identification/records/record_fit.hpp"
 #include "identification/tracing/verdict.hpp"
 
 #include <functional>
@@ -43,7 +43,7 @@ struct ChannelError {
 };
 
 /// One model of a trace with what it leaves.
-struct MotionStage {
+struct RecordStage {
   std::vector<TracedNumber> numbers;
   std::vector<OpenNumbers> open;     ///< null directions of the records
   std::vector<ChannelError> errors;  ///< of the fitted records
@@ -56,13 +56,13 @@ struct MotionStage {
 };
 
 /// An effect beside the model of a round.
-struct MotionCandidate {
-  MotionScore score;
+struct RecordCandidate {
+  RecordScore score;
   bool refitted = false;
-  double rmse = 0.0;                    ///< after the refit, as MotionStage::rmse, in the unit of the channel or [-]
+  double rmse = 0.0;                    ///< after the refit, as RecordStage::rmse, in the unit of the channel or [-]
   double delta_bic = 0.0;               ///< of the refit, of prewhitened residuals
   std::vector<TracedNumber> numbers;    ///< of the effect after the refit, as the keys are set
-  std::vector<MotionSetting> settings;  ///< the same, as the fit has them: counted from what is declared
+  std::vector<RecordSetting> settings;  ///< the same, as the fit has them: counted from what is declared
   bool plausible = true;
   std::string why_not;  ///< it is not named although it is significant
   std::optional<bool> heldout_improves;
@@ -70,8 +70,8 @@ struct MotionCandidate {
 };
 
 /// One round: candidates, their classes, and which was added and why, or why none.
-struct MotionRound {
-  std::vector<MotionCandidate> candidates;        ///< ranked, best first
+struct RecordRound {
+  std::vector<RecordCandidate> candidates;        ///< ranked, best first
   std::vector<std::vector<std::string>> classes;  ///< of labels
   std::string added, reason;
 };
@@ -86,18 +86,18 @@ struct ModelFamily {
 };
 
 /// All that the tracing of a scenario has found, as trace.json tells it.
-struct MotionTrace {
-  std::vector<MotionEffect> effects;
-  MotionStage declared, base, final;
+struct RecordTrace {
+  std::vector<RecordEffect> effects;
+  RecordStage declared, base, final;
   std::string noise_source;                               ///< "declared", "second_differences"
-  double sigma = 0.0;                                     ///< of the fitted channels together, as MotionStage::rmse
+  double sigma = 0.0;                                     ///< of the fitted channels together, as RecordStage::rmse
   bool significant = false;                               ///< what the base leaves
   double ljung_box = 1.0, runs = 1.0, lack_of_fit = 1.0;  ///< p of the base's residual
-  std::vector<MotionRound> rounds;
+  std::vector<RecordRound> rounds;
   std::vector<std::string> selected;  ///< labels
   std::vector<std::size_t> selected_effects;
   std::vector<std::string> partial;  ///< labels of effects that help without explaining: none of them is named
-  std::optional<MotionStage> with_partial;
+  std::optional<RecordStage> with_partial;
   VerdictKind kind = VerdictKind::nothing_missing;
   double share_left = 0.0;  ///< of what the base leaves beside the noise, as mean squares [-]
   std::string channel;      ///< of the first effect selected; not explained: the sensor with most beside its noise

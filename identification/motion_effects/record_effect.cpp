@@ -1,4 +1,4 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@ namespace {
 
 constexpr double least_share = 0.2, most_share = 5.0;  // of what is declared
 
-void declare_other(MotionEffect& effect, const std::string& key, double declared) {
-  MotionNumber number = number_at(key, declared, 0.02 * declared);
+void declare_other(RecordEffect& effect, const std::string& key, double declared) {
+  RecordNumber number = number_at(key, declared, 0.02 * declared);
   number.overrides = [key, declared](double value, const StandingNumbers& record) {
     const double there = record.number(key).value_or(declared) * (value / declared);
     return std::vector<base::Override>{{key, exact_text(there)}};
@@ -26,7 +26,7 @@ void declare_other(MotionEffect& effect, const std::string& key, double declared
 
 }  // namespace
 
-std::vector<JointPlace> joint_places(const MotionModel& model) {
+std::vector<JointPlace> joint_places(const RecordModel& model) {
   std::vector<JointPlace> places;
   for (const auto& [name, use] : model.joints()) {
     const std::size_t colons = name.find("::");
@@ -37,8 +37,8 @@ std::vector<JointPlace> joint_places(const MotionModel& model) {
   return places;
 }
 
-MotionNumber number_at(const std::string& key, double null, double scale) {
-  MotionNumber number = keyed_number(key, null);
+RecordNumber number_at(const std::string& key, double null, double scale) {
+  RecordNumber number = keyed_number(key, null);
   number.scale = scale;
   number.overrides = [key, null](double value, const StandingNumbers& record) {
     return std::vector<base::Override>{{key, exact_text(value + (record.number(key).value_or(null) - null))}};
@@ -46,14 +46,14 @@ MotionNumber number_at(const std::string& key, double null, double scale) {
   return number;
 }
 
-std::vector<MotionEffect> other_number(const MotionModel& model, const std::string& list, const std::string& key,
-                                       const MotionEffect& what) {
-  std::vector<MotionEffect> effects;
+std::vector<RecordEffect> other_number(const RecordModel& model, const std::string& list, const std::string& key,
+                                       const RecordEffect& what) {
+  std::vector<RecordEffect> effects;
   for (const std::string& name : model.declared().names(list)) {
     const std::string full = fmt::format("{}[{}].{}", list, name, key);
     const std::optional<double> declared = model.declared().number(full);
     if (!declared || !(*declared > 0.0)) continue;
-    MotionEffect effect = what;
+    RecordEffect effect = what;
     effect.place = name;
     declare_other(effect, full, *declared);
     effects.push_back(effect);
@@ -61,21 +61,21 @@ std::vector<MotionEffect> other_number(const MotionModel& model, const std::stri
   return effects;
 }
 
-std::vector<MotionEffect> other_wire_number(const MotionModel& model, const std::string& key,
-                                            const MotionEffect& what) {
-  std::vector<MotionEffect> effects = other_number(model, "wires", key, what);
-  for (MotionEffect& of_snare : other_number(model, "snares", "wire." + key, what))
+std::vector<RecordEffect> other_wire_number(const RecordModel& model, const std::string& key,
+                                            const RecordEffect& what) {
+  std::vector<RecordEffect> effects = other_number(model, "wires", key, what);
+  for (RecordEffect& of_snare : other_number(model, "snares", "wire." + key, what))
     effects.push_back(std::move(of_snare));
   return effects;
 }
 
-std::vector<MotionEffect> other_joint_number(const MotionModel& model, const std::string& key,
-                                             const MotionEffect& what) {
-  std::vector<MotionEffect> effects;
+std::vector<RecordEffect> other_joint_number(const RecordModel& model, const std::string& key,
+                                             const RecordEffect& what) {
+  std::vector<RecordEffect> effects;
   for (const JointPlace& joint : joint_places(model)) {
     const std::optional<double> declared = model.declared().number(joint.prefix + key);
     if (!declared || !(*declared > 0.0)) continue;
-    MotionEffect effect = what;
+    RecordEffect effect = what;
     effect.place = joint.name;
     declare_other(effect, joint.prefix + key, *declared);
     effects.push_back(effect);
@@ -83,12 +83,12 @@ std::vector<MotionEffect> other_joint_number(const MotionModel& model, const std
   return effects;
 }
 
-std::vector<MotionEffect> other_body_vector(const MotionModel& model, const std::string& key, const MotionEffect& what,
+std::vector<RecordEffect> other_body_vector(const RecordModel& model, const std::string& key, const RecordEffect& what,
                                             double scale) {
-  std::vector<MotionEffect> effects;
+  std::vector<RecordEffect> effects;
   for (const std::string& name : model.declared().names("bodies")) {
     const std::string whole = fmt::format("bodies[{}].{}", name, key);
-    MotionEffect effect = what;
+    RecordEffect effect = what;
     effect.place = name;
     for (const char* axis : {"[1]", "[2]", "[3]"}) {
       if (const auto declared = model.declared().number(whole + axis); declared && !is_fitted(model, whole + axis))
@@ -99,18 +99,18 @@ std::vector<MotionEffect> other_body_vector(const MotionModel& model, const std:
   return effects;
 }
 
-bool is_fitted(const MotionModel& model, const std::string& key) {
+bool is_fitted(const RecordModel& model, const std::string& key) {
   const std::vector<FreeNumber>& free = model.records().free;
   return std::any_of(free.begin(), free.end(), [&](const FreeNumber& f) {
     return key == f.key || (key.starts_with(f.key) && key[f.key.size()] == '[');
   });
 }
 
-std::vector<ChannelPlace> channel_places(const MotionModel& model) {
+std::vector<ChannelPlace> channel_places(const RecordModel& model) {
   std::vector<ChannelPlace> places;
   const RecordSet& set = model.records();
   for (const std::size_t r : set.used(false)) {
-    const MotionRecord& record = set.records[r];
+    const Record& record = set.records[r];
     for (const RecordChannel& c : record.channels) {
       const std::string& column = model.column(c);
       if (!c.fitted || std::any_of(places.begin(), places.end(), [&](const auto& p) { return p.column == column; }))

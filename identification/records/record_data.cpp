@@ -1,4 +1,4 @@
-#include "identification/records/motion_data.hpp"
+#include "identification/records/record_data.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@ namespace snare::identification {
 
 namespace {
 
-Eigen::VectorXd stacked(const MotionData& data, const std::vector<RecordPrediction>& predictions, bool residual) {
+Eigen::VectorXd stacked(const RecordData& data, const std::vector<RecordPrediction>& predictions, bool residual) {
   Eigen::VectorXd all(data.rows);
   for (const ResidualPiece& piece : data.pieces) {
     const RecordPrediction& p = predictions[data.place_of(piece.record)];
@@ -23,25 +23,25 @@ Eigen::VectorXd stacked(const MotionData& data, const std::vector<RecordPredicti
 
 }  // namespace
 
-std::size_t MotionData::place_of(std::size_t record) const {
+std::size_t RecordData::place_of(std::size_t record) const {
   return static_cast<std::size_t>(std::find(records.begin(), records.end(), record) - records.begin());
 }
 
-Eigen::VectorXd MotionData::residual(const std::vector<RecordPrediction>& predictions) const {
+Eigen::VectorXd RecordData::residual(const std::vector<RecordPrediction>& predictions) const {
   return stacked(*this, predictions, true);
 }
 
-Eigen::VectorXd MotionData::signal(const std::vector<RecordPrediction>& predictions) const {
+Eigen::VectorXd RecordData::signal(const std::vector<RecordPrediction>& predictions) const {
   return stacked(*this, predictions, false);
 }
 
-std::vector<MotionSetting> together(std::vector<MotionSetting> settings, const std::vector<MotionSetting>& fixed) {
+std::vector<RecordSetting> together(std::vector<RecordSetting> settings, const std::vector<RecordSetting>& fixed) {
   settings.insert(settings.end(), fixed.begin(), fixed.end());
   return settings;
 }
 
-MotionData motion_data(const RecordSet& set, const std::vector<std::size_t>& records, const ChannelScales& scales) {
-  MotionData data;
+RecordData record_data(const RecordSet& set, const std::vector<std::size_t>& records, const ChannelScales& scales) {
+  RecordData data;
   data.set = &set;
   data.records = records;
   for (const std::size_t r : records) {
@@ -56,8 +56,8 @@ MotionData motion_data(const RecordSet& set, const std::vector<std::size_t>& rec
   return data;
 }
 
-std::optional<MotionData> beginnings(const MotionData& data, double share, Eigen::Index fewest) {
-  MotionData part = data;
+std::optional<RecordData> beginnings(const RecordData& data, double share, Eigen::Index fewest) {
+  RecordData part = data;
   part.rows = 0;
   part.readings.assign(data.records.size(), 1);
   for (ResidualPiece& piece : part.pieces) {

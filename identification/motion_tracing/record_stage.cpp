@@ -1,4 +1,4 @@
-#include "identification/motion_tracing/motion_stage.hpp"
+#include "identification/motion_tracing/record_stage.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,12 +16,12 @@ struct Sums {
   double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
 };
 
-std::vector<ChannelError> errors_of(const MotionModel& model, const std::vector<std::size_t>& records,
+std::vector<ChannelError> errors_of(const RecordModel& model, const std::vector<std::size_t>& records,
                                     const std::vector<RecordPrediction>& predictions) {
   std::vector<ChannelError> errors;
   std::map<std::string, Sums> sums;
   for (std::size_t k = 0; k < records.size(); ++k) {
-    const MotionRecord& record = model.records().records[records[k]];
+    const Record& record = model.records().records[records[k]];
     if (!predictions[k].usable()) continue;
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
       const RecordChannel& channel = record.channels[c];
@@ -48,7 +48,7 @@ std::vector<ChannelError> errors_of(const MotionModel& model, const std::vector<
 }
 
 /// Root mean square over the fitted channels: of the only one in its unit, of several over their scales.
-double rmse_of(const MotionData& data, const Eigen::VectorXd& residual) {
+double rmse_of(const RecordData& data, const Eigen::VectorXd& residual) {
   if (residual.size() == 0) return 0.0;
   bool one = true;
   for (const ResidualPiece& p : data.pieces)
@@ -65,7 +65,7 @@ double rmse_of(const MotionData& data, const Eigen::VectorXd& residual) {
 double reading_sigma(const RecordSet& set, const std::string& sensor) {
   std::vector<double> sizes;
   double sum = 0.0;
-  for (const MotionRecord& record : set.records) {
+  for (const Record& record : set.records) {
     for (const RecordChannel& c : record.channels) {
       if (c.sensor != sensor) continue;
       if (c.sigma) return *c.sigma;
@@ -86,9 +86,9 @@ double reading_sigma(const RecordSet& set, const std::string& sensor) {
 namespace {
 
 /// Number k of a fit; its standard error and interval by the covariance.
-TracedNumber number_of(const MotionModel& model, const MotionFit& fit, std::size_t k) {
+TracedNumber number_of(const RecordModel& model, const RecordFit& fit, std::size_t k) {
   const auto i = static_cast<Eigen::Index>(k);
-  const MotionSetting& s = fit.settings[k];
+  const RecordSetting& s = fit.settings[k];
   const auto told = [&](double value) { return model.as_set(fit.settings, k, value); };
   TracedNumber n{s.number.key, s.number.unit, told(s.value), 0.0, {}, {}};
   n.bound = at_bound(s.value, s.number.lower, s.number.upper);
@@ -104,7 +104,7 @@ TracedNumber number_of(const MotionModel& model, const MotionFit& fit, std::size
 
 /// The null directions of a fit whose rank was asked. Numbers with the sign of their declared value scale; places shift, where they
 /// may change theirs.
-std::vector<OpenNumbers> open_numbers(const MotionModel& model, const MotionFit& fit) {
+std::vector<OpenNumbers> open_numbers(const RecordModel& model, const RecordFit& fit) {
   std::vector<OpenNumbers> open;
   for (const NullDirection& direction : fit.rank.directions) {
     OpenNumbers one;
@@ -112,7 +112,7 @@ std::vector<OpenNumbers> open_numbers(const MotionModel& model, const MotionFit&
     numbers.insert(numbers.end(), direction.others.begin(), direction.others.end());
     double largest = 0.0;  // power; what shifts is counted to 1 % of what scales
     for (const std::size_t k : numbers) {
-      const MotionSetting& s = fit.settings[k];
+      const RecordSetting& s = fit.settings[k];
       const bool place = s.number.unit == "mm" || s.number.unit == "m" || s.number.unit == "deg";
       const bool relative = s.value * s.number.declared > 0.0 && (s.number.lower >= 0.0 || !place);
       const double change =
@@ -131,7 +131,7 @@ std::vector<OpenNumbers> open_numbers(const MotionModel& model, const MotionFit&
 
 }  // namespace
 
-std::vector<TracedNumber> traced_numbers(const MotionModel& model, const MotionFit& fit) {
+std::vector<TracedNumber> traced_numbers(const RecordModel& model, const RecordFit& fit) {
   std::vector<TracedNumber> numbers;
   for (std::size_t k = 0; k < fit.settings.size(); ++k) {
     TracedNumber n = number_of(model, fit, k);
@@ -145,9 +145,9 @@ std::vector<TracedNumber> traced_numbers(const MotionModel& model, const MotionF
   return numbers;
 }
 
-MotionStage motion_stage(const MotionModel& model, const MotionData& data, const MotionFit& fit,
-                         const MotionFit* heldout, const MotionData& heldout_data) {
-  MotionStage stage;
+RecordStage record_stage(const RecordModel& model, const RecordData& data, const RecordFit& fit,
+                         const RecordFit* heldout, const RecordData& heldout_data) {
+  RecordStage stage;
   stage.numbers = traced_numbers(model, fit);
   stage.open = open_numbers(model, fit);
   stage.errors = errors_of(model, data.records, fit.predictions);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "identification/fitting/identifiability.hpp"
-#include "identification/records/motion_model.hpp"
+#include "identification/records/record_model.hpp"
 #include "numerics/report.hpp"
 
 #include <Eigen/Core>
@@ -25,7 +25,7 @@ struct ResidualPiece {
 };
 
 /// The readings that are compared.
-struct MotionData {
+struct RecordData {
   const RecordSet* set = nullptr;
   std::vector<std::size_t> records;
   std::vector<Eigen::Index> readings;  ///< of each record from its first on; empty: all
@@ -39,21 +39,21 @@ struct MotionData {
   /// Predicted / scale [-], likewise.
   [[nodiscard]] Eigen::VectorXd signal(const std::vector<RecordPrediction>& predictions) const;
 };
-[[nodiscard]] MotionData motion_data(const RecordSet& set, const std::vector<std::size_t>& records,
+[[nodiscard]] RecordData record_data(const RecordSet& set, const std::vector<std::size_t>& records,
                                      const ChannelScales& scales);
 
 /// The same with the first readings of every piece only, a share > 0 of them [-]; nothing where a piece has fewer than `fewest` of them.
-[[nodiscard]] std::optional<MotionData> beginnings(const MotionData& data, double share, Eigen::Index fewest);
+[[nodiscard]] std::optional<RecordData> beginnings(const RecordData& data, double share, Eigen::Index fewest);
 
 /// Root mean square of every channel over its records, less its mean: scales to begin with. Declared ones stay.
 [[nodiscard]] ChannelScales first_scales(const RecordSet& set, const std::vector<std::size_t>& records);
 
 /// What a fit of records has found; usable or not says its report.
-struct MotionFit {
-  std::vector<MotionSetting> settings;
+struct RecordFit {
+  std::vector<RecordSetting> settings;
   std::vector<RecordPrediction> predictions;
   Eigen::VectorXd residual;
-  Eigen::MatrixXd jacobian;    ///< of the signal by the numbers, each over its scale: as MotionFitOptions::derivatives
+  Eigen::MatrixXd jacobian;    ///< of the signal by the numbers, each over its scale: as RecordFitOptions::derivatives
   Eigen::MatrixXd covariance;  ///< of the numbers in their units, of residuals that are correlated
   Identifiability rank;        ///< which numbers the records determine; empty where find_rank() was not asked
   double chi2 = 0.0;           ///< sum of squares of the residual
@@ -70,19 +70,19 @@ enum class FitDerivatives {
 };
 
 /// How records are fitted, when that ends, and who watches it.
-struct MotionFitOptions {
+struct RecordFitOptions {
   FitMethod method = FitMethod::gauss_newton;
   int max_iterations = 60;
   double tolerance = 1e-5;      ///< relative fall of chi2 below which the fit ends
   double simplex_change = 0.0;  ///< as RecordSet::simplex_change; 0: by `tolerance`
   FitDerivatives derivatives = FitDerivatives::central;
   Eigen::MatrixXd first_jacobian;                            ///< of the signal at the start, where known; else empty
-  std::vector<MotionSetting> fixed;                          ///< beside the fitted ones
+  std::vector<RecordSetting> fixed;                          ///< beside the fitted ones
   std::function<bool(int iteration, double chi2)> progress;  ///< false stops
 };
 
 /// Settings that are fitted with those that are not.
-[[nodiscard]] std::vector<MotionSetting> together(std::vector<MotionSetting> settings,
-                                                  const std::vector<MotionSetting>& fixed);
+[[nodiscard]] std::vector<RecordSetting> together(std::vector<RecordSetting> settings,
+                                                  const std::vector<RecordSetting>& fixed);
 
 }  // namespace snare::identification

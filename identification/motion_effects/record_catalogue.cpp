@@ -1,4 +1,4 @@
-#include "identification/motion_effects/motion_effect.hpp"
+#include "identification/motion_effects/record_effect.hpp"
 
 namespace snare::identification {
 
@@ -41,14 +41,14 @@ namespace snare::identification {
   EFFECT(sensor_lag)                 \
   EFFECT(record_clock)
 
-#define SNARE_DECLARE(name) std::vector<MotionEffect> name##_effects(const MotionModel&);
+#define SNARE_DECLARE(name) std::vector<RecordEffect> name##_effects(const RecordModel&);
 SNARE_MOTION_EFFECTS(SNARE_DECLARE)
 #undef SNARE_DECLARE
 
-std::vector<MotionEffect> motion_effects(const MotionModel& model) {
-  std::vector<MotionEffect> all;
+std::vector<RecordEffect> motion_effects(const RecordModel& model) {
+  std::vector<RecordEffect> all;
 #define SNARE_ADD(name) \
-  for (MotionEffect & effect : name##_effects(model)) all.push_back(std::move(effect));
+  for (RecordEffect & effect : name##_effects(model)) all.push_back(std::move(effect));
   SNARE_MOTION_EFFECTS(SNARE_ADD)
 #undef SNARE_ADD
   return all;

@@ -1,4 +1,4 @@
-#include "identification/records/motion_fit.hpp"
+#include "identification/records/record_fit.hpp"
 
 #include "identification/records/bounded_least_squares.hpp"
 #include "identification/records/coloured_noise.hpp"
@@ -17,21 +17,21 @@ constexpr double step_share = 0.1;  ///< of a number's scale: the step of the di
 
 /// Step of the differences by a number. For central ones a number that has grown far beyond its declared value is moved in
 /// proportion: a smaller step would show the errors of the integration alone. Forward ones would be off by the longer step.
-double step_of(const MotionSetting& s, Differences differences) {
+double step_of(const RecordSetting& s, Differences differences) {
   const bool follows = s.number.scale_follows && differences == Differences::central;
   return step_share * (follows ? std::max(s.number.scale, 0.01 * std::abs(s.value)) : s.number.scale);
 }
 
 /// Takes derivatives by numbers that hardly act again, with a long step: a short one shows the errors of the integration. The column of
 /// a number that does not act with a long step either becomes zero, and the number stays where it is.
-void retake_weak_columns(const MotionModel& model, const MotionData& data, const std::vector<MotionSetting>& settings,
-                         const std::vector<RecordPrediction>& base, const std::vector<MotionSetting>& fixed,
+void retake_weak_columns(const RecordModel& model, const RecordData& data, const std::vector<RecordSetting>& settings,
+                         const std::vector<RecordPrediction>& base, const std::vector<RecordSetting>& fixed,
                          Eigen::MatrixXd& jacobian) {
   // Changes of the whole residual in standard deviations; a scale is 1 % of a declared number.
   constexpr double weak = 0.02;       // by a scale
   constexpr double long_step = 50.0;  // scales
   constexpr double nothing = 0.1;     // by the long step
-  std::vector<MotionSetting> weak_ones, rest = fixed;
+  std::vector<RecordSetting> weak_ones, rest = fixed;
   std::vector<Eigen::Index> columns;
   for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
     const double norm = jacobian.col(k).norm();
@@ -46,22 +46,22 @@ void retake_weak_columns(const MotionModel& model, const MotionData& data, const
     if (jacobian.col(k).norm() * long_step < nothing) jacobian.col(k).setZero();
 }
 
-void gauss_newton(const MotionModel& model, const MotionData& data, const MotionFitOptions& options, MotionFit& fit) {
+void gauss_newton(const RecordModel& model, const RecordData& data, const RecordFitOptions& options, RecordFit& fit) {
   const auto count = static_cast<Eigen::Index>(fit.settings.size());
   Eigen::VectorXd start(count);
   BoundedProblem problem;
   problem.lower = problem.upper = Eigen::VectorXd::Zero(count);
   for (Eigen::Index k = 0; k < count; ++k) {
-    const MotionSetting& s = fit.settings[static_cast<std::size_t>(k)];
+    const RecordSetting& s = fit.settings[static_cast<std::size_t>(k)];
     start[k] = s.value / s.number.scale;
     problem.lower[k] = s.number.lower / s.number.scale;
     problem.upper[k] = s.number.upper / s.number.scale;
   }
   // A bound comes back exactly: a number beside it by rounding would be refused.
   const auto at = [&](const Eigen::VectorXd& x) {
-    std::vector<MotionSetting> settings = fit.settings;
+    std::vector<RecordSetting> settings = fit.settings;
     for (Eigen::Index k = 0; k < count; ++k) {
-      MotionSetting& s = settings[static_cast<std::size_t>(k)];
+      RecordSetting& s = settings[static_cast<std::size_t>(k)];
       s.value = std::clamp(x[k] * s.number.scale, s.number.lower, s.number.upper);
     }
     return settings;
@@ -74,7 +74,7 @@ void gauss_newton(const MotionModel& model, const MotionData& data, const Motion
     return data.residual(last);
   };
   problem.residual_jacobian = [&](const Eigen::VectorXd& x) -> Eigen::MatrixXd {
-    const std::vector<MotionSetting> settings = at(x);
+    const std::vector<RecordSetting> settings = at(x);
     if (last_at != x) last = model.predict(together(settings, options.fixed), data.records, data.readings);
     Eigen::MatrixXd derivatives = signal_derivatives(model, data, settings, last, options.fixed, Differences::forward);
     retake_weak_columns(model, data, settings, last, options.fixed, derivatives);
@@ -106,10 +106,10 @@ struct Beside {
 };
 
 /// Signals beside `settings` for the numbers of which a step is asked; a step that nothing can be simulated at has none.
-void take_steps(const MotionModel& model, const MotionData& data, const std::vector<MotionSetting>& settings,
-                const std::vector<RecordPrediction>& base, const std::vector<MotionSetting>& fixed,
+void take_steps(const RecordModel& model, const RecordData& data, const std::vector<RecordSetting>& settings,
+                const std::vector<RecordPrediction>& base, const std::vector<RecordSetting>& fixed,
                 std::vector<Beside>& beside) {
-  std::vector<std::vector<MotionSetting>> points;
+  std::vector<std::vector<RecordSetting>> points;
   std::vector<std::optional<std::size_t>> only;
   for (std::size_t k = 0; k < settings.size(); ++k) {
     for (const double move : {-beside[k].down, beside[k].up}) {
@@ -131,9 +131,9 @@ void take_steps(const MotionModel& model, const MotionData& data, const std::vec
 
 }  // namespace
 
-Eigen::MatrixXd signal_derivatives(const MotionModel& model, const MotionData& data,
-                                   const std::vector<MotionSetting>& settings,
-                                   const std::vector<RecordPrediction>& base, const std::vector<MotionSetting>& fixed,
+Eigen::MatrixXd signal_derivatives(const RecordModel& model, const RecordData& data,
+                                   const std::vector<RecordSetting>& settings,
+                                   const std::vector<RecordPrediction>& base, const std::vector<RecordSetting>& fixed,
                                    Differences differences, double widen) {
   std::vector<Beside> beside(settings.size());
   const auto step_down = [&](std::size_t k) {
@@ -166,9 +166,9 @@ Eigen::MatrixXd signal_derivatives(const MotionModel& model, const MotionData& d
   return columns;
 }
 
-MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vector<MotionSetting> start,
-                     const MotionFitOptions& options) {
-  MotionFit fit;
+RecordFit fit_motion(const RecordModel& model, const RecordData& data, std::vector<RecordSetting> start,
+                     const RecordFitOptions& options) {
+  RecordFit fit;
   const long before = model.simulations();
   fit.settings = std::move(start);
   if (!fit.settings.empty()) {
@@ -210,19 +210,19 @@ namespace {
 /// A step along a direction from the answer: one number is held there.
 struct Move {
   Eigen::Index held = 0;
-  std::vector<MotionSetting> settings;
+  std::vector<RecordSetting> settings;
   bool clipped = false;   ///< the number has a bound before
   double promised = 0.0;  ///< change of the residual by it, over its noise, as the derivatives have it
 };
 
 /// Standard deviation of a row of the residual.
-double noise_of(const MotionData& data, const MotionFit& optimum) {
+double noise_of(const RecordData& data, const RecordFit& optimum) {
   const auto dof = static_cast<double>(std::max<Eigen::Index>(1, data.rows - optimum.jacobian.cols()));
   return std::sqrt(std::max(optimum.chi2 / dof, 1e-300));
 }
 
 /// As far as should change the residual by `share` of `doubtful_change`; negative: to the other side. `held` moves, at most that far.
-Move move_along(const MotionData& data, const MotionFit& optimum, const Eigen::VectorXd& direction, Eigen::Index held,
+Move move_along(const RecordData& data, const RecordFit& optimum, const Eigen::VectorXd& direction, Eigen::Index held,
                 double share) {
   constexpr double far = 20.0;  // scales, a fifth of a declared number: far beyond its standard error, were it known
   Move move;
@@ -234,7 +234,7 @@ Move move_along(const MotionData& data, const MotionFit& optimum, const Eigen::V
   move.settings = optimum.settings;
   for (std::size_t k = 0; k < move.settings.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    MotionSetting& s = move.settings[k];
+    RecordSetting& s = move.settings[k];
     const double to = s.value + size * direction[i] / direction[move.held] * s.number.scale;
     s.value = std::clamp(to, s.number.lower, s.number.upper);
     move.clipped = move.clipped || (i == move.held && s.value != to);
@@ -243,33 +243,33 @@ Move move_along(const MotionData& data, const MotionFit& optimum, const Eigen::V
 }
 
 /// The fit with the held number where the move has it; none where nothing can be simulated.
-std::optional<MotionFit> refitted(const MotionModel& model, const MotionData& data, const Move& move) {
-  MotionFitOptions options;
-  std::vector<MotionSetting> others = move.settings;
+std::optional<RecordFit> refitted(const RecordModel& model, const RecordData& data, const Move& move) {
+  RecordFitOptions options;
+  std::vector<RecordSetting> others = move.settings;
   options.fixed = {others[static_cast<std::size_t>(move.held)]};
   others.erase(others.begin() + move.held);
   options.max_iterations = 15;
   options.derivatives = FitDerivatives::last;
-  MotionFit moved = fit_motion(model, data, others, options);
+  RecordFit moved = fit_motion(model, data, others, options);
   if (!std::ranges::all_of(moved.predictions, &RecordPrediction::usable)) return std::nullopt;
   return moved;
 }
 
-double rise_of(const MotionData& data, const MotionFit& optimum, double chi2) {
+double rise_of(const RecordData& data, const RecordFit& optimum, double chi2) {
   const double noise = noise_of(data, optimum);
   return (chi2 - optimum.chi2) / (noise * noise);
 }
 
 /// Whether chi2 stays where it is along a direction about whose derivatives there is doubt: on one side, or on the other where the first has a
 /// bound or cannot be simulated.
-bool stays_along(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
+bool stays_along(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
                  const Eigen::VectorXd& direction) {
   Eigen::Index held = 0;  // what moves most
   optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs().maxCoeff(&held);
   for (const double side : {1.0, -1.0}) {
     const Move move = move_along(data, optimum, direction, held, side);
     if (move.clipped) continue;
-    if (const std::optional<MotionFit> moved = refitted(model, data, move))
+    if (const std::optional<RecordFit> moved = refitted(model, data, move))
       return is_no_rise(rise_of(data, optimum, moved->chi2), move.promised);
   }
   return false;
@@ -279,7 +279,7 @@ bool stays_along(const MotionModel& model, const MotionData& data, const MotionF
 struct ValleyPoint {
   double share = 0.0;                   ///< of the way that should change the residual by `doubtful_change`
   double rise = 0.0;                    ///< of chi2 [-]
-  std::vector<MotionSetting> settings;  ///< of all numbers
+  std::vector<RecordSetting> settings;  ///< of all numbers
 };
 
 /// The move to `share`, the others on the polynomial through the last points, of which there may be three.
@@ -302,7 +302,7 @@ Move carried_on(Move move, double share, const std::vector<ValleyPoint>& points)
 
 /// Follows the valley of chi2 from the answer to one side (1 or -1): number k is held at points along `direction`, the others are
 /// fitted anew. Steps are shorter where nothing can be simulated. Returns the last point: the end of the way, or where it ends before.
-ValleyPoint follow_valley(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
+ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
                           const Eigen::VectorXd& direction, Eigen::Index k, double side) {
   constexpr double first_step = 0.25, least_step = 0.005;
   constexpr int most_fits = 24;
@@ -311,11 +311,11 @@ ValleyPoint follow_valley(const MotionModel& model, const MotionData& data, cons
   for (int fits = 0; fits < most_fits && points.back().share < 1.0 && !model.stopped(); ++fits) {
     const double share = std::min(1.0, points.back().share + step);
     const Move move = carried_on(move_along(data, optimum, direction, k, side * share), share, points);
-    const std::optional<MotionFit> there = move.clipped ? std::nullopt : refitted(model, data, move);
+    const std::optional<RecordFit> there = move.clipped ? std::nullopt : refitted(model, data, move);
     if (!there && step < least_step) break;
     step *= there ? 2.0 : 0.5;
     if (!there) continue;
-    std::vector<MotionSetting> settings = there->settings;
+    std::vector<RecordSetting> settings = there->settings;
     settings.insert(settings.begin() + k, move.settings[static_cast<std::size_t>(k)]);
     points.push_back({share, rise_of(data, optimum, there->chi2), std::move(settings)});
   }
@@ -326,7 +326,7 @@ ValleyPoint follow_valley(const MotionModel& model, const MotionData& data, cons
 /// the way ends, at a bound or where nothing can be simulated, before that could be told. Where half the way chi2 rises
 /// along a straight line as in a linear model nothing is fitted anew, unless the numbers nearly go together: a valley that the derivatives
 /// miss by a little rises, too.
-std::optional<ValleyPoint> valley_beside(const MotionModel& model, const MotionData& data, const MotionFit& optimum,
+std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
                                          const Eigen::VectorXd& direction, Eigen::Index k, double side) {
   constexpr double can_tell = 2.0;  // change of the residual: a rise by its square, 4, is told from none, below 1.8
   const Eigen::VectorXd effect = optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs();
@@ -346,7 +346,7 @@ std::optional<ValleyPoint> valley_beside(const MotionModel& model, const MotionD
 /// Numbers whose interval the readings do not bear out become null directions: where the readings depend on a number by its square, as on
 /// the height of a probe above a plane of symmetry, every answer beside the plane has a derivative and the plane has none. What has moved
 /// by more than its standard error on the way belongs to the direction.
-void test_intervals(const MotionModel& model, const MotionData& data, MotionFit& fit) {
+void test_intervals(const RecordModel& model, const RecordData& data, RecordFit& fit) {
   const Eigen::Index count = fit.rank.covariance.rows();
   for (Eigen::Index k = 0; k < count && !model.stopped(); ++k) {
     const Eigen::MatrixXd& covariance = fit.rank.covariance;
@@ -373,7 +373,7 @@ void test_intervals(const MotionModel& model, const MotionData& data, MotionFit&
 
 }  // namespace
 
-void find_rank(const MotionModel& model, const MotionData& data, MotionFit& fit) {
+void find_rank(const RecordModel& model, const RecordData& data, RecordFit& fit) {
   const auto numbers = static_cast<Eigen::Index>(fit.settings.size());
   if (numbers == 0 || !fit.report.usable() || fit.jacobian.cols() != numbers || model.stopped()) return;
   constexpr double twice = 2.0;

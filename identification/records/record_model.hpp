@@ -1,7 +1,7 @@
 #pragma once
 
 #include "identification/records/declared_scenario.hpp"
-#include "identification/records/motion_number.hpp"
+#include "identification/records/record_number.hpp"
 #include "identification/records/record_set.hpp"
 #include "identification/records/slowest_mode.hpp"
 
@@ -31,8 +31,8 @@ struct RecordPrediction {
 };
 
 /// Numbers with their values.
-struct MotionSetting {
-  MotionNumber number;
+struct RecordSetting {
+  RecordNumber number;
   double value = 0.0;  ///< in the unit of its key
 };
 
@@ -44,16 +44,16 @@ struct JointUse {
 };
 
 /// A scenario as a model of records: numbers in, channels out.                                   theory.md (I.20)
-class MotionModel {
+class RecordModel {
  public:
   /// stop: asked during simulations; true: leave them. Throws InputError for a scenario without sensors, or that lacks one of the channels,
   /// and for keys of free numbers that are none.
-  explicit MotionModel(const RecordSet& set, std::function<bool()> stop = {});
+  explicit RecordModel(const RecordSet& set, std::function<bool()> stop = {});
 
   [[nodiscard]] const RecordSet& records() const { return set_; }               ///< as read
   [[nodiscard]] const DeclaredScenario& declared() const { return declared_; }  ///< the scenario as its file says
   /// The free numbers of the file, at their declared values; those of every record for itself once for each of `records`.
-  [[nodiscard]] std::vector<MotionSetting> free_settings(const std::vector<std::size_t>& records) const;
+  [[nodiscard]] std::vector<RecordSetting> free_settings(const std::vector<std::size_t>& records) const;
   /// Unit of a channel's column, from the sensor's name: "mm".
   [[nodiscard]] std::string unit(const RecordChannel& channel) const;
   [[nodiscard]] const std::map<std::string, JointUse>& joints() const { return joints_; }
@@ -63,20 +63,20 @@ class MotionModel {
 
   /// Predictions of these records, of the first `readings` of each (empty: of all), beyond which nothing is simulated. In parallel, the same for any
   /// number of threads.
-  [[nodiscard]] std::vector<RecordPrediction> predict(const std::vector<MotionSetting>& settings,
+  [[nodiscard]] std::vector<RecordPrediction> predict(const std::vector<RecordSetting>& settings,
                                                       const std::vector<std::size_t>& records,
                                                       const std::vector<Eigen::Index>& readings = {}) const;
   /// The same for several settings at once: [setting][record]. Numbers of one record cost no simulation of the others: `base` are the predictions
   /// at settings that differ in that number only, and are taken over where `only` says so.
   [[nodiscard]] std::vector<std::vector<RecordPrediction>> predict_many(
-      const std::vector<std::vector<MotionSetting>>& settings, const std::vector<std::size_t>& records,
+      const std::vector<std::vector<RecordSetting>>& settings, const std::vector<std::size_t>& records,
       const std::vector<Eigen::Index>& readings = {}, const std::vector<RecordPrediction>* base = nullptr,
       const std::vector<std::optional<std::size_t>>& only = {}) const;
 
   /// What the key of a number is set to, in its unit, where the number has this value and those before it in `settings` theirs: in the first of the
   /// fitted records that it is in. An effect's number is counted from what is declared, and acts beside what others have set. The value itself
   /// where a number has no key of the files.
-  [[nodiscard]] double as_set(const std::vector<MotionSetting>& settings, std::size_t number, double value) const;
+  [[nodiscard]] double as_set(const std::vector<RecordSetting>& settings, std::size_t number, double value) const;
 
   [[nodiscard]] long simulations() const { return simulations_; }  ///< runs so far
   [[nodiscard]] bool stopped() const { return stop_ && stop_(); }  ///< somebody wants the work to end
@@ -88,12 +88,12 @@ class MotionModel {
   /// A run came to its end in so many steps.
   void took(long steps) const;
   void bound_trials() const;
-  [[nodiscard]] RecordPrediction simulate(const std::vector<MotionSetting>& settings, std::size_t record,
+  [[nodiscard]] RecordPrediction simulate(const std::vector<RecordSetting>& settings, std::size_t record,
                                           Eigen::Index readings) const;
   /// Keys of a record's scenario with the first `count` settings, and with all of them and the duration that so many readings want.
-  [[nodiscard]] std::vector<base::Override> keys_of(const std::vector<MotionSetting>& settings, std::size_t count,
+  [[nodiscard]] std::vector<base::Override> keys_of(const std::vector<RecordSetting>& settings, std::size_t count,
                                                     std::size_t record) const;
-  [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<MotionSetting>& settings, std::size_t record,
+  [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<RecordSetting>& settings, std::size_t record,
                                                          Eigen::Index readings) const;
   void look_at_joints();
   /// Zero or next to it for a number > 0 whose reader takes none below.

@@ -1,4 +1,4 @@
-#include "identification/records/motion_number.hpp"
+#include "identification/records/record_number.hpp"
 
 #include <fmt/format.h>
 
@@ -49,8 +49,8 @@ std::string unit_of_key(const std::string& key) {
   return "";
 }
 
-MotionNumber keyed_number(const std::string& key, double declared) {
-  MotionNumber number;
+RecordNumber keyed_number(const std::string& key, double declared) {
+  RecordNumber number;
   number.key = key;
   number.unit = unit_of_key(key);
   number.declared = declared;

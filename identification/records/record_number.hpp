@@ -26,7 +26,7 @@ struct SignalChange {
 using SignalChanges = std::map<std::string, SignalChange>;
 
 /// A number that a fit of records may change, in the unit of its key.
-struct MotionNumber {
+struct RecordNumber {
   std::string key;   ///< as results show it
   std::string unit;  ///< as results show it; empty for a pure number
   double declared = 0.0;
@@ -46,7 +46,7 @@ struct MotionNumber {
 [[nodiscard]] std::string exact_text(double value);
 
 /// The number under a key of the scenario or of an arm's file, the same in all records; `declared` in the unit of the key.
-[[nodiscard]] MotionNumber keyed_number(const std::string& key, double declared);
+[[nodiscard]] RecordNumber keyed_number(const std::string& key, double declared);
 
 /// "mm", "N m/rad", ... of a key that ends in its unit; empty: a pure number.
 [[nodiscard]] std::string unit_of_key(const std::string& key);

@@ -1,6 +1,6 @@
-#include "identification/motion_tracing/motion_round.hpp"
+#include "identification/motion_tracing/record_round.hpp"
 
-#include "identification/motion_tracing/motion_stage.hpp"
+#include "identification/motion_tracing/record_stage.hpp"
 
 #include <fmt/format.h>
 
@@ -23,16 +23,16 @@ constexpr int enough_iterations = 12;  // to compare effects; the one that is na
 constexpr double apart = 2.0;          // deviates by which the misfits of two refits must differ to be told apart
 
 /// The model with the numbers of an effect beside those that are fitted. From null the first step moves both as they belong together.
-MotionFit refit(const RoundInput& in, const MotionScore& score) {
-  const MotionEffect& effect = in.effects[score.effect];
+RecordFit refit(const RoundInput& in, const RecordScore& score) {
+  const RecordEffect& effect = in.effects[score.effect];
   const auto from = [&](const std::function<double(std::size_t)>& value, bool at_null) {
-    std::vector<MotionSetting> start = in.current.settings;
+    std::vector<RecordSetting> start = in.current.settings;
     for (std::size_t k = 0; k < score.numbers.size(); ++k) {
-      MotionNumber number = effect.numbers[score.numbers[k]];
+      RecordNumber number = effect.numbers[score.numbers[k]];
       number.scale = score.scale[k];
       start.push_back({number, value(k)});
     }
-    MotionFitOptions options;
+    RecordFitOptions options;
     options.progress = in.progress;
     options.max_iterations = enough_iterations;
     options.derivatives = FitDerivatives::search;
@@ -42,10 +42,10 @@ MotionFit refit(const RoundInput& in, const MotionScore& score) {
     }
     return fit_motion(in.model, in.data, start, options);
   };
-  MotionFit fit = from([&](std::size_t k) { return effect.numbers[score.numbers[k]].declared; }, true);
+  RecordFit fit = from([&](std::size_t k) { return effect.numbers[score.numbers[k]].declared; }, true);
   if (fit.chi2 < (1.0 - least_fall) * in.current.chi2 || in.model.stopped()) return fit;
   // Nothing shows next to null: begin where the score points.
-  MotionFit again = from([&](std::size_t k) { return score.start[k]; }, false);
+  RecordFit again = from([&](std::size_t k) { return score.start[k]; }, false);
   return again.chi2 < fit.chi2 ? again : fit;
 }
 
@@ -53,14 +53,14 @@ MotionFit refit(const RoundInput& in, const MotionScore& score) {
 constexpr double the_same = 1e-4;
 
 /// Bayesian criterion of prewhitened residuals, up to what all models share.
-double bic(const MotionData& data, const ColouredNoise& noise, const MotionFit& fit) {
+double bic(const RecordData& data, const ColouredNoise& noise, const RecordFit& fit) {
   return whitened(data, noise, fit.residual).squaredNorm() +
          static_cast<double>(fit.settings.size()) * std::log(static_cast<double>(data.rows));
 }
 
 /// A refit, and what noise alone would have taken of its misfit by as many numbers.
 struct Refit {
-  MotionFit fit;
+  RecordFit fit;
   double chance = 0.0;  ///< in the mean
   double readings = 1.0;
   Eigen::VectorXd heldout;  ///< residual of the records held out, where they were asked
@@ -79,7 +79,7 @@ bool is_worse(const Refit& best, const Refit& other, double s) {
 }
 
 /// Whether the records tell two refits apart.
-bool told_apart(const MotionData& data, const ColouredNoise& noise, const Refit& best, const Refit& other) {
+bool told_apart(const RecordData& data, const ColouredNoise& noise, const Refit& best, const Refit& other) {
   return is_worse(best, other, coloured(data, noise, other.fit.residual - best.fit.residual).norm());
 }
 
@@ -107,8 +107,8 @@ std::vector<std::size_t> settle(const RoundInput& in, const ColouredNoise& noise
 }
 
 /// Why an effect that is significant is not named.
-std::string objection(const RoundInput& in, const MotionCandidate& c, const MotionFit& fit) {
-  const MotionEffect& effect = in.effects[c.score.effect];
+std::string objection(const RoundInput& in, const RecordCandidate& c, const RecordFit& fit) {
+  const RecordEffect& effect = in.effects[c.score.effect];
   const double value = c.settings.front().value;
   if (!c.plausible)
     return fmt::format("{} = {:.5g} {} is outside {:.5g} to {:.5g}, the physical range", c.numbers.front().key, value,
@@ -127,7 +127,7 @@ std::string objection(const RoundInput& in, const MotionCandidate& c, const Moti
 
 }  // namespace
 
-bool out_of_step(const MotionData& data, const MotionFit& fit) {
+bool out_of_step(const RecordData& data, const RecordFit& fit) {
   const Eigen::VectorXd readings = data.signal(fit.predictions) + fit.residual;
   double moves = 0.0;
   for (const ResidualPiece& p : data.pieces) {
@@ -137,25 +137,25 @@ bool out_of_step(const MotionData& data, const MotionFit& fit) {
   return fit.residual.squaredNorm() > good_part * good_part * moves;
 }
 
-RoundResult motion_round(const RoundInput& in) {
+RoundResult record_round(const RoundInput& in) {
   RoundResult result;
-  std::vector<MotionEffect> asked;
+  std::vector<RecordEffect> asked;
   std::vector<std::size_t> index;
   for (std::size_t e = 0; e < in.effects.size(); ++e) {
     if (std::find(in.selected.begin(), in.selected.end(), e) != in.selected.end()) continue;
     asked.push_back(in.effects[e]);
     index.push_back(e);
   }
-  MotionScores scores = score_motion(in.model, in.data, in.current, {}, asked, in.significance);
-  std::vector<MotionCandidate>& candidates = result.round.candidates;
-  for (MotionScore& score : scores.scores) {
+  RecordScores scores = score_motion(in.model, in.data, in.current, {}, asked, in.significance);
+  std::vector<RecordCandidate>& candidates = result.round.candidates;
+  for (RecordScore& score : scores.scores) {
     score.effect = index[score.effect];
     candidates.emplace_back().score = std::move(score);
   }
-  const auto significant = [&](const MotionCandidate& c) {
+  const auto significant = [&](const RecordCandidate& c) {
     return c.score.unobservable.empty() && c.score.adjusted_p < in.significance;
   };
-  std::stable_sort(candidates.begin(), candidates.end(), [&](const MotionCandidate& a, const MotionCandidate& b) {
+  std::stable_sort(candidates.begin(), candidates.end(), [&](const RecordCandidate& a, const RecordCandidate& b) {
     if (significant(a) != significant(b)) return significant(a);
     return significant(a) ? a.score.fall > b.score.fall : a.score.p < b.score.p;
   });
@@ -168,9 +168,9 @@ RoundResult motion_round(const RoundInput& in) {
   const double promise = candidates.front().score.fall;
   std::size_t plausible = 0;
   const bool all = out_of_step(in.data, in.current);
-  const auto take = [&](std::size_t k, MotionFit found) {
-    MotionCandidate& c = candidates[k];
-    const MotionFit& fit = fits[k].fit = std::move(found);
+  const auto take = [&](std::size_t k, RecordFit found) {
+    RecordCandidate& c = candidates[k];
+    const RecordFit& fit = fits[k].fit = std::move(found);
     if (fit.residual.size() == 0 || fit.covariance.size() == 0) return;
     c.refitted = true;
     fits[k].chance = c.score.chance;
@@ -179,15 +179,15 @@ RoundResult motion_round(const RoundInput& in) {
     const auto own = static_cast<std::ptrdiff_t>(in.current.settings.size());  // behind those of the fit
     c.numbers.assign(numbers.begin() + own, numbers.end());
     c.settings.assign(fit.settings.begin() + own, fit.settings.end());
-    c.rmse = motion_stage(in.model, in.data, fit, nullptr, {}).rmse;
+    c.rmse = record_stage(in.model, in.data, fit, nullptr, {}).rmse;
     c.delta_bic = bic(in.data, scores.noise, fit) - present;
-    const MotionEffect& effect = in.effects[c.score.effect];
+    const RecordEffect& effect = in.effects[c.score.effect];
     const double value = c.settings.front().value;
     c.plausible = value >= effect.plausible_lower && value <= effect.plausible_upper;
     c.why_not = objection(in, c, fit);
   };
   for (std::size_t k = 0; k < candidates.size() && (all || (k < most_tried && plausible < most_refits)); ++k) {
-    const MotionCandidate& c = candidates[k];
+    const RecordCandidate& c = candidates[k];
     if (!significant(c) || (!all && plausible > 0 && c.score.fall < promising * promise)) break;
     if (in.model.stopped()) return result;
     take(k, refit(in, c.score));
@@ -201,11 +201,11 @@ RoundResult motion_round(const RoundInput& in) {
     best.resize(std::min(best.size(), most_refits));
     for (const std::size_t k : best) {
       if (in.model.stopped()) return result;
-      MotionFitOptions options;
+      RecordFitOptions options;
       options.progress = in.progress;
       options.derivatives = FitDerivatives::search;
       options.first_jacobian = fits[k].fit.jacobian;
-      MotionFit further = fit_motion(in.model, in.data, fits[k].fit.settings, options);
+      RecordFit further = fit_motion(in.model, in.data, fits[k].fit.settings, options);
       if (further.chi2 < fits[k].fit.chi2) take(k, std::move(further));
     }
   }
@@ -213,7 +213,7 @@ RoundResult motion_round(const RoundInput& in) {
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const MotionCandidate &x = candidates[a], &y = candidates[b];
+    const RecordCandidate &x = candidates[a], &y = candidates[b];
     if (x.refitted != y.refitted) return x.refitted;
     if (!x.refitted) return false;
     if (x.why_not.empty() != y.why_not.empty()) return x.why_not.empty();
@@ -225,7 +225,7 @@ RoundResult motion_round(const RoundInput& in) {
         candidates[order[k]].score.effect < candidates[order[0]].score.effect)
       std::swap(order[0], order[k]);
 
-  std::vector<MotionCandidate> sorted;
+  std::vector<RecordCandidate> sorted;
   std::vector<Refit> sorted_fits;
   for (const std::size_t k : order) {
     sorted.push_back(std::move(candidates[k]));
@@ -233,14 +233,14 @@ RoundResult motion_round(const RoundInput& in) {
   }
   candidates = std::move(sorted);
   fits = std::move(sorted_fits);
-  if (const MotionCandidate& best = candidates.front(); !best.refitted || !best.why_not.empty()) {
+  if (const RecordCandidate& best = candidates.front(); !best.refitted || !best.why_not.empty()) {
     result.round.reason = best.refitted ? fmt::format("{}: {}", in.effects[best.score.effect].label(), best.why_not)
                                         : "no effect could be fitted";
     return result;
   }
   std::vector<std::size_t> members{0}, of;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const MotionCandidate& c = candidates[k];
+    const RecordCandidate& c = candidates[k];
     of.push_back(c.score.effect);
     if (k > 0 && c.refitted && c.why_not.empty() && !told_apart(in.data, scores.noise, fits.front(), fits[k]))
       members.push_back(k);
@@ -257,7 +257,7 @@ RoundResult motion_round(const RoundInput& in) {
   for (const std::size_t k : members)
     result.round.classes.front().push_back(in.effects[candidates[k].score.effect].label());
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    MotionCandidate& c = candidates[k];
+    RecordCandidate& c = candidates[k];
     const bool same = std::find(members.begin(), members.end(), k) != members.end();
     c.class_index = same ? 0 : result.round.classes.size();
     if (!same) result.round.classes.push_back({in.effects[c.score.effect].label()});
@@ -273,10 +273,10 @@ RoundResult motion_round(const RoundInput& in) {
   result.added = candidates.front().score.effect;
   result.better = std::move(fits.front().fit);
   if (!in.model.stopped()) {  // and with the derivatives of its place
-    MotionFitOptions to_the_end;
+    RecordFitOptions to_the_end;
     to_the_end.progress = in.progress;
     to_the_end.first_jacobian = result.better.jacobian;
-    MotionFit fit = fit_motion(in.model, in.data, result.better.settings, to_the_end);
+    RecordFit fit = fit_motion(in.model, in.data, result.better.settings, to_the_end);
     if (fit.chi2 <= result.better.chi2) result.better = std::move(fit);
   }
   return result;

@@ -1,4 +1,4 @@
-#include "identification/records/motion_model.hpp"
+#include "identification/records/record_model.hpp"
 
 #include "base/errors.hpp"
 #include "base/index.hpp"
@@ -30,14 +30,14 @@ const WireMotions& run_of(const scenario::Scenario& s, const RecordSet& set) {
 }
 
 /// Long enough for the first readings of a record, whatever the scenario's own duration. A filter that runs both ways wants all of them.
-double duration_for(const MotionRecord& record, Eigen::Index readings, double interval) {
+double duration_for(const Record& record, Eigen::Index readings, double interval) {
   const Eigen::Index last = (record.filter.cutoff > 0.0 ? record.times.size() : readings) - 1;
   return (std::ceil(record.times[last] / interval) + 1.0) * interval;
 }
 
 }  // namespace
 
-MotionModel::MotionModel(const RecordSet& set, std::function<bool()> stop)
+RecordModel::RecordModel(const RecordSet& set, std::function<bool()> stop)
     : set_(set), declared_(declared_scenario(set)), stop_(std::move(stop)) {
   const scenario::Scenario read = scenario::read_scenario(set.scenario, set.set);
   const WireMotions& motions = run_of(read, set);
@@ -51,7 +51,7 @@ MotionModel::MotionModel(const RecordSet& set, std::function<bool()> stop)
     if (names.size() == 1) columns_[s.name] = names.front();
   }
   std::vector<base::InputProblem> problems;
-  for (const MotionRecord& r : set.records) {
+  for (const Record& r : set.records) {
     for (const RecordChannel& c : r.channels)
       if (!columns_.contains(c.sensor))
         problems.push_back({set.file.string(), 0, fmt::format("records[{}].columns.{}", r.name, c.column), c.sensor,
@@ -77,7 +77,7 @@ MotionModel::MotionModel(const RecordSet& set, std::function<bool()> stop)
            fmt::format("is declared as {:.9g}, above its bound", declared_.number(f.key).value_or(0.0))});
   }
   // Keys of records must be right, too, before anything is written.
-  for (const MotionRecord& r : set.records) {
+  for (const Record& r : set.records) {
     if (r.set.empty()) continue;
     try {
       std::vector<base::Override> overrides = set.set;
@@ -99,12 +99,12 @@ MotionModel::MotionModel(const RecordSet& set, std::function<bool()> stop)
     }
   }
   if (!problems.empty()) throw base::InputError(problems);
-  for (const MotionRecord& r : set.records) declared_in_.push_back(declared_scenario(set, r.set));
+  for (const Record& r : set.records) declared_in_.push_back(declared_scenario(set, r.set));
   for (const FreeNumber& f : set.free) bounds_[f.key] = lower_bound(f);
   look_at_joints();
 }
 
-double MotionModel::lower_bound(const FreeNumber& number) const {
+double RecordModel::lower_bound(const FreeNumber& number) const {
   const double declared = declared_.number(number.key).value_or(0.0);
   constexpr double none = -std::numeric_limits<double>::infinity();
   constexpr double next_to_zero = 1e-6;  // of what is declared, where zero itself is refused
@@ -123,10 +123,10 @@ double MotionModel::lower_bound(const FreeNumber& number) const {
   return taken(0.0) ? 0.0 : next_to_zero * declared;
 }
 
-std::vector<MotionSetting> MotionModel::free_settings(const std::vector<std::size_t>& records) const {
-  std::vector<MotionSetting> settings;
+std::vector<RecordSetting> RecordModel::free_settings(const std::vector<std::size_t>& records) const {
+  std::vector<RecordSetting> settings;
   for (const FreeNumber& f : set_.free) {
-    MotionNumber number = keyed_number(f.key, declared_.number(f.key).value_or(0.0));
+    RecordNumber number = keyed_number(f.key, declared_.number(f.key).value_or(0.0));
     number.lower = f.lower.value_or(bounds_.at(f.key));
     if (f.upper) number.upper = *f.upper;
     if (f.scale) {
@@ -148,19 +148,19 @@ std::vector<MotionSetting> MotionModel::free_settings(const std::vector<std::siz
   return settings;
 }
 
-std::string MotionModel::unit(const RecordChannel& channel) const {
+std::string RecordModel::unit(const RecordChannel& channel) const {
   const auto column = columns_.find(channel.sensor);
   return column == columns_.end() ? "" : unit_of_key(column->second);
 }
 
-std::vector<base::Override> MotionModel::keys_of(const std::vector<MotionSetting>& settings, std::size_t count,
+std::vector<base::Override> RecordModel::keys_of(const std::vector<RecordSetting>& settings, std::size_t count,
                                                  std::size_t record) const {
   std::vector<base::Override> overrides = set_.set;
-  const MotionRecord& r = set_.records[record];
+  const Record& r = set_.records[record];
   overrides.insert(overrides.end(), r.set.begin(), r.set.end());
   std::vector<std::pair<std::size_t, std::string>> counted_above;  // an override, and the key above which it is counted
   for (std::size_t k = 0; k < count; ++k) {
-    const MotionSetting& s = settings[k];
+    const RecordSetting& s = settings[k];
     if (!s.number.overrides || (s.number.record && *s.number.record != record)) continue;
     if (!s.number.above.empty()) counted_above.emplace_back(overrides.size(), s.number.above);
     for (base::Override& one : s.number.overrides(s.value, {declared_in_[record], overrides}))
@@ -173,7 +173,7 @@ std::vector<base::Override> MotionModel::keys_of(const std::vector<MotionSetting
   return overrides;
 }
 
-std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSetting>& settings, std::size_t record,
+std::vector<base::Override> RecordModel::overrides_of(const std::vector<RecordSetting>& settings, std::size_t record,
                                                       Eigen::Index readings) const {
   std::vector<base::Override> overrides = keys_of(settings, settings.size(), record);
   const double interval = declared_.number("output_interval_s").value_or(1e-3);
@@ -181,8 +181,8 @@ std::vector<base::Override> MotionModel::overrides_of(const std::vector<MotionSe
   return overrides;
 }
 
-double MotionModel::as_set(const std::vector<MotionSetting>& settings, std::size_t number, double value) const {
-  const MotionNumber& own = settings[number].number;
+double RecordModel::as_set(const std::vector<RecordSetting>& settings, std::size_t number, double value) const {
+  const RecordNumber& own = settings[number].number;
   if (!own.overrides || !own.above.empty()) return value;
   const std::size_t record = own.record.value_or(set_.used(false).front());
   const std::vector<base::Override> before = keys_of(settings, number, record);
@@ -191,7 +191,7 @@ double MotionModel::as_set(const std::vector<MotionSetting>& settings, std::size
   return sets ? StandingNumbers{declared_in_[record], last}.number(own.key).value_or(value) : value;
 }
 
-std::shared_ptr<const SensorRun> MotionModel::run(const std::vector<base::Override>& overrides, std::size_t record,
+std::shared_ptr<const SensorRun> RecordModel::run(const std::vector<base::Override>& overrides, std::size_t record,
                                                   std::string& failure) const {
   std::string key = std::to_string(record);
   for (const base::Override& one : overrides) key += "\n" + one.key + "=" + one.value;
@@ -231,7 +231,7 @@ std::shared_ptr<const SensorRun> MotionModel::run(const std::vector<base::Overri
   return run;
 }
 
-RecordPrediction MotionModel::simulate(const std::vector<MotionSetting>& settings, std::size_t record,
+RecordPrediction RecordModel::simulate(const std::vector<RecordSetting>& settings, std::size_t record,
                                        Eigen::Index readings) const {
   RecordPrediction prediction;
   try {
@@ -239,7 +239,7 @@ RecordPrediction MotionModel::simulate(const std::vector<MotionSetting>& setting
         this->run(overrides_of(settings, record, readings), record, prediction.failure);
     if (run == nullptr) return prediction;
     SignalChanges changes;
-    for (const MotionSetting& s : settings)
+    for (const RecordSetting& s : settings)
       if (s.number.signal && (!s.number.record || *s.number.record == record)) s.number.signal(changes, s.value);
     prediction.channels = signals_at(*run, set_.records[record], readings, columns_, changes);
   } catch (const base::InputError& error) {
@@ -250,14 +250,14 @@ RecordPrediction MotionModel::simulate(const std::vector<MotionSetting>& setting
   return prediction;
 }
 
-std::vector<RecordPrediction> MotionModel::predict(const std::vector<MotionSetting>& settings,
+std::vector<RecordPrediction> RecordModel::predict(const std::vector<RecordSetting>& settings,
                                                    const std::vector<std::size_t>& records,
                                                    const std::vector<Eigen::Index>& readings) const {
   return predict_many({settings}, records, readings).front();
 }
 
-std::vector<std::vector<RecordPrediction>> MotionModel::predict_many(
-    const std::vector<std::vector<MotionSetting>>& settings, const std::vector<std::size_t>& records,
+std::vector<std::vector<RecordPrediction>> RecordModel::predict_many(
+    const std::vector<std::vector<RecordSetting>>& settings, const std::vector<std::size_t>& records,
     const std::vector<Eigen::Index>& readings, const std::vector<RecordPrediction>* base,
     const std::vector<std::optional<std::size_t>>& only) const {
   std::vector<std::vector<RecordPrediction>> all(settings.size(), std::vector<RecordPrediction>(records.size()));
@@ -282,17 +282,17 @@ std::vector<std::vector<RecordPrediction>> MotionModel::predict_many(
   return all;
 }
 
-void MotionModel::took(long steps) const {
+void RecordModel::took(long steps) const {
   long longest = longest_run_;
   while (steps > longest && !longest_run_.compare_exchange_weak(longest, steps)) {
   }
 }
 
-void MotionModel::bound_trials() const {
+void RecordModel::bound_trials() const {
   if (longest_run_ > 0) most_steps_ = longest_trial * std::max<long>(longest_run_, a_run);
 }
 
-void MotionModel::look_at_joints() {
+void RecordModel::look_at_joints() {
   const std::size_t first = set_.used(false).front();
   const scenario::Scenario read =
       scenario::read_scenario(set_.scenario, overrides_of({}, first, set_.records[first].times.size()));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identification/records/motion_data.hpp"
+#include "identification/records/record_data.hpp"
 
 #include <vector>
 
@@ -8,8 +8,8 @@ namespace snare::identification {
 
 /// Least squares of the free simulation: (I.20). Gauss-Newton (Levenberg-Marquardt, bounds) with differences in parallel;
 /// or Nelder and Mead's simplex by NLopt, without derivatives on its way.
-[[nodiscard]] MotionFit fit_motion(const MotionModel& model, const MotionData& data, std::vector<MotionSetting> start,
-                                   const MotionFitOptions& options = {});
+[[nodiscard]] RecordFit fit_motion(const RecordModel& model, const RecordData& data, std::vector<RecordSetting> start,
+                                   const RecordFitOptions& options = {});
 
 /// How derivatives are taken from simulations.
 enum class Differences {
@@ -19,14 +19,14 @@ enum class Differences {
 
 /// Derivatives of the stacked signal [-] by some numbers, each times the number's scale: differences of a tenth of the scale, one-sided
 /// at a bound. A column whose simulations fail is zero. `base`: predictions at `settings`; widen: factor of the steps, > 0.
-[[nodiscard]] Eigen::MatrixXd signal_derivatives(const MotionModel& model, const MotionData& data,
-                                                 const std::vector<MotionSetting>& settings,
+[[nodiscard]] Eigen::MatrixXd signal_derivatives(const RecordModel& model, const RecordData& data,
+                                                 const std::vector<RecordSetting>& settings,
                                                  const std::vector<RecordPrediction>& base,
-                                                 const std::vector<MotionSetting>& fixed = {},
+                                                 const std::vector<RecordSetting>& fixed = {},
                                                  Differences differences = Differences::central, double widen = 1.0);
 
 /// Fills `rank` of a usable fit with central derivatives, whose errors those by twice the step show. With null directions the
 /// covariance becomes that with one number of each held.                                       theory.md (I.32)
-void find_rank(const MotionModel& model, const MotionData& data, MotionFit& fit);
+void find_rank(const RecordModel& model, const RecordData& data, RecordFit& fit);
 
 }  // namespace snare::identification
