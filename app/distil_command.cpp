@@ -121,9 +121,7 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
     write_exports(c == 0 ? options.out : options.out / fmt::format("case_{}", c + 1), wire, result.cases[c], c + 1);
   }
   base::write_text(options.out / "report.html", distil_report_html(wire, result, warnings));
-  nlohmann::json written = law_json(wire, result);
-  written["warnings"] = warnings;
-  write_result(options, "law.json", written);
+  write_result(options, "law.json", law_json(wire, result));
   std::filesystem::remove(journal);
   if (options.json) return ExitStatus::done;
   for (const reduction::DistilledCase& one : result.cases) {

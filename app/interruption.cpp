@@ -58,7 +58,8 @@ Work& work() {
   } catch (const std::exception& error) {
     kept = std::string("what was finished cannot be kept: ") + error.what();
   }
-  tell(fmt::format("{}interrupted while {}: {}\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "", w.stage, kept));
+  if (!kept.empty())
+    tell(fmt::format("{}interrupted while {}: {}\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "", w.stage, kept));
   if (!w.json_schema.empty()) {
     const nlohmann::json word{{"schema", w.json_schema}, {"interrupted", true}, {"stage", w.stage}, {"kept", kept}};
     const std::string text = word.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

@@ -244,7 +244,7 @@ int run(int argc, char** argv) {
   snare::app::ExportOptions exported;
   add_export(app, exported, export_options);
 
-  snare::app::catch_interrupts(snare::app::release_result_folder);
+  snare::app::catch_interrupts(snare::base::release_result_folders);
   try {
     check_words(app, argc, argv);
     app.parse(argc, argv);
@@ -264,8 +264,10 @@ int run(int argc, char** argv) {
     status = guarded(arm_options, "snare-arm-show/1",
                      [&](Console& c) { return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c); });
   }
+  new_options.command = "snare new " + snare::base::shell_word(new_what);
   if (app.get_subcommand("new")->parsed())
     status = guarded(new_options, "", [&](Console& c) { return snare::app::run_new(new_what, new_options, c); });
+  export_options.command = "snare export " + snare::base::shell_word(exported.law.string());
   if (app.get_subcommand("export")->parsed())
     status =
         guarded(export_options, "", [&](Console& c) { return snare::app::run_export(exported, export_options, c); });

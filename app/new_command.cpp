@@ -58,8 +58,9 @@ ExitStatus run_new(const std::string& what, const CommonOptions& options, Consol
   const auto set = std::find_if(sets.begin(), sets.end(), [&](const StartingSet& s) { return what == s.name; });
   if (set == sets.end())
     throw base::InputError({"", 0, "new", what, "must be \"capture\", \"experiment\" or \"wire\""});
-  if (options.out.empty()) throw base::InputError({"", 0, "--out", "", "must name a folder"});
-  require_folder(options.out);
+  std::vector<std::string> names;
+  for (const auto& [from, to] : set->files) names.emplace_back(to);
+  const ResultFolder folder(options, names);
   // All or nothing: what is there stays as it is.
   std::vector<base::InputProblem> problems;
   std::vector<std::pair<fs::path, std::string>> files;

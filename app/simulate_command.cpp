@@ -8,8 +8,7 @@
 #include "app/result_folder.hpp"
 #include "base/files.hpp"
 #include "results/motion_history.hpp"
-#include "results/motion_summary.hpp"
-#include "results/warnings.hpp"
+#include "results/simulation.hpp"
 #include "scenario/scenario.hpp"
 
 #include <fmt/format.h>
@@ -38,16 +37,15 @@ ExitStatus simulate(const scenario::Scenario& asked, const CommonOptions& option
   const scenario::WireMotions& motions = asked.motions;
   const std::vector<MotionRecord> records = run_motions(
       motions.runs, {options.out / "checkpoint.bin", motions.input, motions.output.checkpoint_wall_time}, console);
-  const bool partial = left_undone(motions.runs, records);
+  const json summary = simulation_document(asked, records, {{}, interrupted});
+  begin_writing();
+  const bool partial = summary["interrupted"].get<bool>();
+  const auto warnings = summary["warnings"].get<std::vector<std::string>>();
   const std::vector<FinishedMotion> finished = finished_motions(motions, records);
   const FinishedMotion& run = finished.front();
-  json summary = motion_summary(asked, run, interrupted);
-  begin_writing();
-  const std::vector<std::string> warnings = motion_warnings(finished);
   for (const std::string& warning : warnings) console.warn(warning);
   write_history(options.out / "history.csv", run.asked.motion, run.samples);
   if (!motions.sensors.empty()) write_telemetry(options.out / "telemetry.csv", motions, run.samples);
-  summary.update({{"interrupted", partial}, {"warnings", warnings}});
   base::write_text(options.out / "report.html", motion_page(asked, run, version(), warnings, partial));
   write_result(options, "summary.json", summary);
   if (motions.output.paraview)

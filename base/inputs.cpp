@@ -53,13 +53,13 @@ std::vector<Inputs::File> Inputs::files() const {
   return all;
 }
 
-void Inputs::protect(const fs::path& output) const {
+void Inputs::protect(const fs::path& output, const std::string& key) const {
   const fs::path entry = entry_of(output);
   const std::scoped_lock lock(mutex_);
   for (const auto& [name, input] : entries_) {
     if (name == entry.string() || input.resolved == entry)
       throw InputError(
-          {input.path.string(), 0, "--out", output.parent_path().string(),
+          {input.path.string(), 0, key, output.parent_path().string(),
            fmt::format("must be another folder: {} would overwrite this input", output.filename().string())});
   }
 }

@@ -61,10 +61,11 @@ std::string identity_of(const BenchmarkCase& c) {
   return fmt::format("{:016x}", base::fingerprint(all));
 }
 
-/// Of an archived history, byte by byte: what is said about it belongs to this one and to no other.
-std::string fingerprint_of(const std::filesystem::path& history) {
-  constexpr std::size_t longest = std::size_t{1} << 30u;  // [byte]
-  return fmt::format("{:016x}", base::fingerprint(base::read_own(history, longest)));
+constexpr std::size_t longest_history = std::size_t{1} << 30u;  // [byte]
+
+/// Fingerprint of the text of an archived history, byte by byte: its JSON file belongs to this history and to no other.
+std::string fingerprint_of(const std::string& history) {
+  return fmt::format("{:016x}", base::fingerprint(history));
 }
 
 /// The numbers of a column of a history; none where it has no such column.
@@ -133,8 +134,7 @@ ModelRun run_model(const BenchmarkCase& c, const BenchmarkModel& model, const Wa
   HistoryTable table({}, 1);
   json result;
   const auto begin = std::chrono::steady_clock::now();
-  r.end = runner.run(
-      all_fixed(c, model), [&] { return watch.stopped(); }, result, &table);
+  r.end = runner.run(all_fixed(c, model), {{}, watch.stop}, result, &table);
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (r.end.status != CaseEnd::Status::done) return r;
   try {
@@ -154,9 +154,7 @@ std::optional<double> largest_step(const BenchmarkCase& c, const BenchmarkModel&
   until.push_back({"duration_s", fmt::format("{}", *c.step_at)});
   until.push_back({"output.modes", "true"});
   json result;
-  const CaseEnd end = CaseRunner(model.file, "", model.file)
-                          .run(
-                              until, [&] { return watch.stopped(); }, result, nullptr);
+  const CaseEnd end = CaseRunner(model.file, "", model.file).run(until, {{}, watch.stop}, result);
   if (end.status != CaseEnd::Status::done) return std::nullopt;
   const json step = result.value("largest_explicit_step_s", json());
   return step.is_number() ? std::optional(step.get<double>()) : std::nullopt;
@@ -257,10 +255,10 @@ BenchmarkReference read_reference(const BenchmarkFile& benchmark, const Benchmar
   BenchmarkReference reference;
   reference.tracks = read_tracks(csv, c);
   try {
-    const json j = json::parse(base::read_own(about, std::size_t{1} << 20u));
+    const json j = json::parse(base::read_text(about, std::size_t{1} << 20u));
     if (j.at("schema") != reference_schema)
       throw std::runtime_error(fmt::format("schema must be {}", reference_schema));
-    if (j.at("history") != fingerprint_of(csv))
+    if (j.at("history") != fingerprint_of(base::read_text(csv, longest_history)))
       throw std::runtime_error(fmt::format("{} has been changed since", csv.filename().string()));
     for (const auto& [name, column] : c.columns) reference.bars[name] = score_of_json(j.at("bars").at(name));
     for (const study::Collected& field : c.outcome) reference.outcome[field.name] = j.at("outcome").at(field.name);
@@ -300,7 +298,7 @@ CaseEnd archive_case(const BenchmarkFile& benchmark, const BenchmarkCase& c, con
     csv.row(cells);
   }
   csv.commit();
-  about["history"] = fingerprint_of(file);
+  about["history"] = fingerprint_of(base::read_own(file, longest_history));
   base::write_text(benchmark.references / (c.name + ".json"), about.dump(1) + "\n");
   return {};
 }

@@ -4,6 +4,7 @@
 #include "reduction/law_simulators.hpp"
 #include "results/in_mm.hpp"
 #include "results/version.hpp"
+#include "results/warnings.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -232,6 +233,7 @@ json law_json(const WireFile& file, const Distillation& distillation) {
               {"outside_the_range", "continued linearly and flagged, or refused, as the caller chooses"},
               {"cases", json::array()}};
   for (const DistilledCase& one : distillation.cases) result["cases"].push_back(case_json(one));
+  result["warnings"] = wire_warnings(file);
   return result;
 }
 

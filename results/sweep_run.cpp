@@ -2,6 +2,7 @@
 
 #include "base/errors.hpp"
 #include "study/case_loop.hpp"
+#include "study/rank_journal.hpp"
 
 #include <fmt/format.h>
 
@@ -98,6 +99,7 @@ class SweepRun {
   }
 
   void begin() {
+    study::take_rank_journals(journal_, study_.identity(), study_.count());
     if (workers_.histories != nullptr) again_ = workers_.histories->missing(journal_);
     before_ = journal_.finished() - again_.size();
     began_ = Clock::now();
@@ -134,6 +136,7 @@ class SweepRun {
             return study::line_of(record);
           },
           number(0));
+      study::take_rank_journals(journal_, study_.identity(), study_.count());
     } else {
       study::run_cases(dispatcher, workers_.threads, [&](std::uint64_t k) { return run_one(number(k), values(k)); });
       dispatcher.rethrow();

@@ -88,13 +88,13 @@ study::CaseRecord SweepStudy::run(const std::vector<double>& values, const std::
   if (sweep_.histories && keep) table.emplace(sweep_.histories->columns, sweep_.histories->every);
   try {
     json result;
-    const CaseEnd end = runner_.run(
-        overrides_of(values),
-        [&] {
-          if (elapsed() > sweep_.time_limit) late = true;
-          return late.load() || stop();
-        },
-        result, table ? &*table : nullptr);
+    const CaseEnd end = runner_.run(overrides_of(values),
+                                    {{},
+                                     [&] {
+                                       if (elapsed() > sweep_.time_limit) late = true;
+                                       return late.load() || stop();
+                                     }},
+                                    result, table ? &*table : nullptr);
     using Status = CaseEnd::Status;
     record.reason = end.reason;
     switch (end.status) {

@@ -47,7 +47,7 @@ std::optional<std::pair<std::uint64_t, std::string_view>> parsed(std::string_vie
 }  // namespace
 
 Journal::Journal(std::filesystem::path file, const std::string& identity, std::uint64_t count, Use use)
-    : file_(std::move(file)), limit_(count) {
+    : file_(std::move(file)), appends_(use == Use::append), limit_(count) {
   assert(identity.find('\n') == std::string::npos);
   if (count > 0) offsets_.resize(count);
   descriptor_ = ::open(file_.c_str(), (use == Use::append ? O_RDWR | O_CREAT : O_RDONLY) | O_CLOEXEC, 0666);
@@ -67,11 +67,13 @@ Journal::Journal(std::filesystem::path file, const std::string& identity, std::u
 }
 
 Journal::~Journal() {
+  if (appends_ && size_ == begin_) ::unlink(file_.c_str());
   ::close(descriptor_);
 }
 
 void Journal::load(const std::string& identity, Use use) {
   const std::string head = std::string(schema) + identity;
+  begin_ = head.size() + 1;
   std::string rest;  // of the chunks so far: a line that has not ended
   std::uint64_t line_begin = 0;
   bool first = true;

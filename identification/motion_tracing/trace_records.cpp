@@ -26,7 +26,7 @@ class Tracer {
   Tracer(const RecordSet& set, const MotionTraceOptions& options)
       : set_(set),
         options_(options),
-        model_(set, [this] { return stop_; }),
+        model_(set, [this] { return stop_ || (options_.stop && options_.stop()); }),
         fitted_(set.used(false)),
         heldout_(set.used(true)) {}
 

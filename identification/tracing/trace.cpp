@@ -1,5 +1,6 @@
 #include "identification/tracing/trace.hpp"
 
+#include "base/parallel.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/fitting/conditions.hpp"
 #include "identification/fitting/statistics.hpp"
@@ -26,6 +27,9 @@ SolverSettings for_search(const SolverSettings& asked) {
   search.elements = std::min(128, asked.elements);
   return search;
 }
+
+/// Thrown where `TraceOptions::stop` has ended curves.
+struct Stopped {};
 
 /// A trace under way.
 class Tracer {
@@ -118,8 +122,19 @@ std::vector<Setting> Tracer::with_places(const Fit& fit) const {
   return settings;
 }
 
+// Every reading of every series has a point of its own here, of a million readings for minutes.
 ModelError Tracer::error_of(const Fit& fit, SharedPredictions& predictions) const {
-  predictions = all_.evaluate(with_places(fit)).predictions;
+  const Model::Applied applied = all_.apply(with_places(fit));
+  PredictionOptions whole;
+  whole.stop = options_.stop;
+  std::vector<Prediction> curves(applied.series.size());
+  base::parallel_for(curves.size(), [&](std::size_t k) {
+    curves[k] = predict(applied.series[k], all_.solver(), applied.reading[k], whole);
+  });
+  for (const Prediction& p : curves) {
+    if (p.curve.curve.report.termination == numerics::Termination::interrupted) throw Stopped{};
+  }
+  predictions = std::move(curves);
   return model_error(result_.series, result_.heldout, predictions, model_, fit);
 }
 
@@ -605,7 +620,14 @@ Trace Tracer::run() {
 }  // namespace
 
 Trace trace(const Experiment& experiment, const TraceOptions& options) {
-  return Tracer(experiment, options, Division(experiment)).run();
+  try {
+    return Tracer(experiment, options, Division(experiment)).run();
+  } catch (const Stopped&) {
+    Trace stopped;
+    stopped.interrupted = true;
+    stopped.report.end(numerics::Termination::interrupted, "interrupted");
+    return stopped;
+  }
 }
 
 }  // namespace snare::identification

@@ -75,6 +75,8 @@ struct TraceOptions {
   bool attribute = true;                 ///< ask the channels when the catalogue does not explain the residual
   bool intervals = true;                 ///< profile likelihood of the selected effects' numbers
   std::function<bool(const std::string& stage)> progress;  ///< false stops
+  /// Asked between the points of curves with every reading; true ends the trace there: its report is `interrupted`. May be empty.
+  std::function<bool()> stop;
   /// Is given the trace as it would be if it ended here, whenever more of it is whole: after the base fit, and once the final
   /// model is chosen. Marked as interrupted. May be empty.
   std::function<void(const Trace& part)> reached;

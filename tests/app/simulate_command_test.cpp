@@ -54,6 +54,40 @@ TEST_F(SimulateCommand, AirTable) {
   EXPECT_NE(contents("out/history.csv").find("wire tension_N"), std::string::npos);
 }
 
+// The wire is a law without mass, and the shape is fixed to the world.
+TEST_F(SimulateCommand, RejectsAScenarioInWhichNothingCanMove) {
+  write("still.toml", R"(schema = "snare-scenario/2"
+title = "still"
+source = "a test"
+duration_s = 0.01
+[[shapes]]
+name = "post"
+frame = "world"
+kind = "capsule"
+position_mm = [20.0, 0.0, 50.0]
+rotation_deg = [90.0, 0.0, 0.0]
+length_mm = 40.0
+radius_mm = 3.0
+[[wires]]
+name = "a"
+construction = "solid"
+diameter_mm = 1.5
+length_mm = 100.0
+youngs_modulus_GPa = 193.0
+poisson_ratio = 0.29
+density_kg_m3 = 7930.0
+from_mm = [0.0, 0.0, 0.0]
+to_mm = [0.0, 0.0, 99.0]
+bulge = [1.0, 0.0, 0.0]
+mount = "pinned"
+model = "stretched"
+)");
+  EXPECT_EQ(CommandFixture::run("simulate still.toml --out out"), 2);
+  EXPECT_NE(contents("err.txt").find("nothing can move: no wire with mass, no body, no arm"), std::string::npos)
+      << contents("err.txt");
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
 // What sensors read stands in telemetry.csv; the summary has its least, largest and last, and what the joints bore.
 TEST_F(SimulateCommand, TellsWhatSensorsReadAndJointsBore) {
   ASSERT_EQ(run("ssrms_rigidize.toml", "--set duration_s=0.5"), 0) << contents("log.txt");
