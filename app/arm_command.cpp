@@ -42,7 +42,8 @@ Eigen::VectorXd angles_of(const std::string& pose, const multibody::ArmDescripti
   while (sound && at <= end) {
     double value = 0.0;
     const auto [stopped, error] = std::from_chars(at, end, value);
-    sound = error == std::errc() && (stopped == end || *stopped == ',') && found < count && std::isfinite(value);
+    sound =
+        error == std::errc() && (stopped == end || *stopped == ',') && found < count && std::isfinite(value);
     if (sound) angles[found++] = value * degree;
     at = stopped + 1;
   }
@@ -78,7 +79,8 @@ nlohmann::json finite_or_null(double value) {
 /// by the bodies that they carry, a free body has its own name.
 nlohmann::json mass_matrix_of(const multibody::Tree& tree, const Eigen::VectorXd& q,
                               const std::vector<std::string>& names) {
-  constexpr const char* of_free[] = {".spin_x", ".spin_y", ".spin_z", ".velocity_x", ".velocity_y", ".velocity_z"};
+  constexpr const char* of_free[] = {".spin_x",     ".spin_y",     ".spin_z",
+                                     ".velocity_x", ".velocity_y", ".velocity_z"};
   nlohmann::json joints = nlohmann::json::array(), rows = nlohmann::json::array();
   for (int i = 0; i < tree.size(); ++i) {
     const std::string& name = names[static_cast<std::size_t>(i)];
@@ -176,7 +178,8 @@ std::string limits_of_urdf(const nlohmann::json& joints) {
                           : joint["servo_limit_Nm"].is_null() ? "is no limit"
                                                               : "not used (limit_Nm of the arm file)");
     if (!speed.is_null())
-      text += fmt::format("{} velocity {:.4g} rad/s not used", effort.is_null() ? "" : ",", speed.get<double>());
+      text +=
+          fmt::format("{} velocity {:.4g} rad/s not used", effort.is_null() ? "" : ",", speed.get<double>());
     text += "\n";
   }
   return text;
@@ -203,7 +206,8 @@ nlohmann::json mass_matrix_of(multibody::RobotDescription robot) {
   multibody::add_robot(tree, 0, multibody::RootJoint::fixed, robot);
   std::vector<std::string> names = body_names(tree);
   for (const multibody::RobotJoint& joint : robot.joints) {
-    if (joint.kind) names[static_cast<std::size_t>(tree.frame(tree.find_frame(joint.child)).body)] = joint.name;
+    if (joint.kind)
+      names[static_cast<std::size_t>(tree.frame(tree.find_frame(joint.child)).body)] = joint.name;
   }
   return mass_matrix_of(tree, multibody::zero_state(tree).q, names);
 }
@@ -218,16 +222,17 @@ ExitStatus show_robot(const std::filesystem::path& file, const CommonOptions& op
       {"root", robot.root},           {"warnings", robot.warnings}, {"joints", nlohmann::json::array()}};
   for (std::size_t k = 0; k < robot.joints.size(); ++k) {
     const multibody::RobotJoint& joint = robot.joints[k];
-    result["joints"].push_back({{"joint", joint.name},
-                                {"kind", joint.kind ? joint_kinds[static_cast<std::size_t>(*joint.kind)] : "fixed"},
-                                {"from", joint.parent},
-                                {"link", joint.child},
-                                {"length_m", joint.X_PJ.p.norm()},
-                                {"link_mass_kg", robot.links[k + 1].inertia.mass},
-                                {"effort_Nm", finite_or_null(joint.effort)},
-                                {"velocity_rad_s", finite_or_null(joint.speed)},
-                                {"damping_Nms_rad", joint.damping},
-                                {"friction_Nm", joint.friction}});
+    result["joints"].push_back(
+        {{"joint", joint.name},
+         {"kind", joint.kind ? joint_kinds[static_cast<std::size_t>(*joint.kind)] : "fixed"},
+         {"from", joint.parent},
+         {"link", joint.child},
+         {"length_m", joint.X_PJ.p.norm()},
+         {"link_mass_kg", robot.links[k + 1].inertia.mass},
+         {"effort_Nm", finite_or_null(joint.effort)},
+         {"velocity_rad_s", finite_or_null(joint.speed)},
+         {"damping_Nms_rad", joint.damping},
+         {"friction_Nm", joint.friction}});
   }
   result["mass_matrix"] = mass_matrix_of(robot);
   for (const std::string& warning : robot.warnings) console.warn(warning);
@@ -236,8 +241,9 @@ ExitStatus show_robot(const std::filesystem::path& file, const CommonOptions& op
     return ExitStatus::done;
   }
   std::string text = fmt::format(
-      "{}: a robot description of {} links, {:.6g} kg, root {}\n{:<18}{:<12}{:<22}{:<22}{:>11}{:>11}\n", robot.name,
-      robot.links.size(), mass, robot.root, "joint", "kind", "from", "link", "length [m]", "mass [kg]");
+      "{}: a robot description of {} links, {:.6g} kg, root {}\n{:<18}{:<12}{:<22}{:<22}{:>11}{:>11}\n",
+      robot.name, robot.links.size(), mass, robot.root, "joint", "kind", "from", "link", "length [m]",
+      "mass [kg]");
   for (const nlohmann::json& joint : result["joints"]) {
     text += fmt::format("{:<18}{:<12}{:<22}{:<22}{:>11.4g}{:>11.2f}\n", joint["joint"].get<std::string>(),
                         joint["kind"].get<std::string>(), joint["from"].get<std::string>(),
@@ -259,8 +265,8 @@ ExitStatus show_robot(const std::filesystem::path& file, const CommonOptions& op
 
 }  // namespace
 
-ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& pose, const CommonOptions& options,
-                        Console& console) {
+ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& pose,
+                        const CommonOptions& options, Console& console) {
   const std::vector<base::Override> overrides = overrides_of(options);
   if (file.extension() == ".urdf") {
     if (!pose.empty()) throw base::InputError({"", 0, "--pose", pose, "only with an arm file (TOML)"});
@@ -279,20 +285,21 @@ ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& po
     print_result(result);
     return ExitStatus::done;
   }
-  std::string text =
-      fmt::format("{}\narm {:.6g} kg, all that moves {:.6g} kg; reach {:.4g} m; tip at {:.4g}, {:.4g}, {:.4g} m\n",
-                  base::visible(arm.title), result["arm_mass_kg"].get<double>(), result["moving_mass_kg"].get<double>(),
-                  result["reach_m"].get<double>(), result["tip_m"][0].get<double>(), result["tip_m"][1].get<double>(),
-                  result["tip_m"][2].get<double>());
+  std::string text = fmt::format(
+      "{}\narm {:.6g} kg, all that moves {:.6g} kg; reach {:.4g} m; tip at {:.4g}, {:.4g}, {:.4g} m\n",
+      base::visible(arm.title), result["arm_mass_kg"].get<double>(), result["moving_mass_kg"].get<double>(),
+      result["reach_m"].get<double>(), result["tip_m"][0].get<double>(), result["tip_m"][1].get<double>(),
+      result["tip_m"][2].get<double>());
   text += fmt::format("{:<18}{:<22}{:>9}{:>11}{:>14}{:>26}  {}\n", "joint", "link", "angle", "mass [kg]",
                       "motor [kg m2]", "stiffness [N m/rad]", "drive");
   for (const nlohmann::json& joint : result["joints"]) {
     const double first = joint["stiffness_first_Nm_rad"], outer = joint["stiffness_outer_Nm_rad"];
-    text += fmt::format("{:<18}{:<22}{:>5.1f} deg{:>11.2f}{:>14.4g}{:>26}  {}\n", joint["joint"].get<std::string>(),
-                        joint["link"].get<std::string>(), joint["angle_deg"].get<double>(),
-                        joint["link_mass_kg"].get<double>(), joint["motor_inertia_kg_m2"].get<double>(),
-                        first == outer ? fmt::format("{:.4g}", first) : fmt::format("{:.4g} to {:.4g}", first, outer),
-                        joint["drive"].get<std::string>());
+    text += fmt::format(
+        "{:<18}{:<22}{:>5.1f} deg{:>11.2f}{:>14.4g}{:>26}  {}\n", joint["joint"].get<std::string>(),
+        joint["link"].get<std::string>(), joint["angle_deg"].get<double>(),
+        joint["link_mass_kg"].get<double>(), joint["motor_inertia_kg_m2"].get<double>(),
+        first == outer ? fmt::format("{:.4g}", first) : fmt::format("{:.4g} to {:.4g}", first, outer),
+        joint["drive"].get<std::string>());
   }
   for (const nlohmann::json& joint : result["joints"]) {
     const double dry = joint["coulomb_Nm"], viscous = joint["viscous_Nms_rad"];
@@ -301,10 +308,11 @@ ExitStatus run_arm_show(const std::filesystem::path& file, const std::string& po
                           joint["joint"].get<std::string>(), dry, viscous);
   }
   text += limits_of_urdf(result["joints"]);
-  text += fmt::format("natural frequencies [Hz]\n  motors locked  {}\n", listed(result["frequencies_locked_Hz"]));
+  text +=
+      fmt::format("natural frequencies [Hz]\n  motors locked  {}\n", listed(result["frequencies_locked_Hz"]));
   if (result.contains("frequencies_locked_large_deflection_Hz")) {
-    text +=
-        fmt::format("  the same, large deflections  {}\n", listed(result["frequencies_locked_large_deflection_Hz"]));
+    text += fmt::format("  the same, large deflections  {}\n",
+                        listed(result["frequencies_locked_large_deflection_Hz"]));
   }
   text += fmt::format("  as driven      {}\n  limp           {}\n", listed(result["frequencies_driven_Hz"]),
                       listed(result["frequencies_limp_Hz"]));

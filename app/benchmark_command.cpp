@@ -21,8 +21,8 @@ namespace {
 
 /// The cases that are asked for; with a history of somebody's that is to be scored on one.
 study::BenchmarkFile asked_cases(const std::filesystem::path& file, const CommonOptions& options) {
-  study::BenchmarkFile all =
-      study::read_benchmark_file(file.empty() ? data_directory() / "benchmark/ring.toml" : file, overrides_of(options));
+  study::BenchmarkFile all = study::read_benchmark_file(
+      file.empty() ? data_directory() / "benchmark/ring.toml" : file, overrides_of(options));
   std::vector<std::string> names;
   for (const study::BenchmarkCase& c : all.cases) names.push_back(c.name);
   if (!options.only_named.empty()) {
@@ -36,7 +36,8 @@ study::BenchmarkFile asked_cases(const std::filesystem::path& file, const Common
   }
   if (!options.against.empty()) {
     if (options.only_named.empty())
-      throw base::InputError({"", 0, "--against", options.against.string(), "needs --case: the case that it is of"});
+      throw base::InputError(
+          {"", 0, "--against", options.against.string(), "needs --case: the case that it is of"});
     if (options.archive)
       throw base::InputError({"", 0, "--against", options.against.string(), "must stand without --archive"});
     study::BenchmarkModel theirs;
@@ -53,8 +54,8 @@ ExitStatus make_archive(const study::BenchmarkFile& benchmark, Console& console,
     console.end_progress();
     if (end.status != CaseEnd::Status::done) {
       const bool stopped = end.status == CaseEnd::Status::stopped;
-      console.complain(
-          fmt::format("{}: {}; its archive is as before", c.name, stopped ? "interrupted" : end.reason.c_str()));
+      console.complain(fmt::format("{}: {}; its archive is as before", c.name,
+                                   stopped ? "interrupted" : end.reason.c_str()));
       return end.status == CaseEnd::Status::refused ? ExitStatus::wrong_input : ExitStatus::solver_stopped;
     }
     console.say(fmt::format("wrote {}.csv, .json", (benchmark.references / c.name).string()));
@@ -77,8 +78,8 @@ void tell(const BenchmarkAnswer& answer, Console& console) {
     if (row.scores.empty()) console.say(fmt::format("  {:<16} {}", row.model, row.end.reason));
     for (const auto& [name, s] : row.scores) {
       const study::TrackScore& bar = answer.reference.bars.at(name);
-      console.say(fmt::format("  {:<16} {:<22} peak {:<18} integral {:<18} rms {:<18} {:>8.3g} s", row.model, name,
-                              score_words(s.peak, bar.peak), score_words(s.integral, bar.integral),
+      console.say(fmt::format("  {:<16} {:<22} peak {:<18} integral {:<18} rms {:<18} {:>8.3g} s", row.model,
+                              name, score_words(s.peak, bar.peak), score_words(s.integral, bar.integral),
                               score_words(s.rms, bar.rms), row.seconds));
     }
   }
@@ -98,7 +99,8 @@ ExitStatus run_benchmark(const std::filesystem::path& file, const CommonOptions&
     references.push_back(read_reference(benchmark, c));
     asked += c.models.size();
     if (references.back().stale)
-      console.warn(fmt::format("{}: the archived history was made from other input than there is now", c.name));
+      console.warn(
+          fmt::format("{}: the archived history was made from other input than there is now", c.name));
   }
   const ResultFolder folder(options, {"benchmark.json", "scores.csv", "report.html"});
   std::mutex mutex;  // of answers and done: what is finished may be asked for while a model runs

@@ -37,20 +37,23 @@ std::string known(const std::optional<double>& value) {
 }
 
 void add_scores(ReportPage& page, const BenchmarkAnswer& answer) {
-  Table table{"Differences from the archived history, in brackets those of its last refinement but one",
-              {"model"_code, "quantity"_code, "peak"_number, "integral"_number, "rms"_number, "first touch"_number,
-               "outcome"_text, "energy error"_number, "explicit step [s]"_number, "wall time [s]"_number}};
+  Table table{
+      "Differences from the archived history, in brackets those of its last refinement but one",
+      {"model"_code, "quantity"_code, "peak"_number, "integral"_number, "rms"_number, "first touch"_number,
+       "outcome"_text, "energy error"_number, "explicit step [s]"_number, "wall time [s]"_number}};
   for (const BenchmarkRow& row : answer.rows) {
     const std::string seconds = row.seconds > 0.0 ? format_significant(row.seconds) : "-";
     if (row.scores.empty())
-      table.rows.push_back({row.model, "-", "-", "-", "-", "-", {row.end.reason, Tone::bad}, "-", "-", seconds});
+      table.rows.push_back(
+          {row.model, "-", "-", "-", "-", "-", {row.end.reason, Tone::bad}, "-", "-", seconds});
     for (const auto& [name, s] : row.scores) {
       const study::TrackScore& bar = answer.reference.bars.at(name);
       std::string outcome = outcome_words(row, answer.reference);
       if (s.covered < 1.0) outcome += fmt::format("; covers {:.0f} %", 100.0 * s.covered);
-      table.rows.push_back({row.model, name, score_words(s.peak, bar.peak), score_words(s.integral, bar.integral),
-                            score_words(s.rms, bar.rms), touch_words(s, bar), std::move(outcome),
-                            known(row.energy_error), known(row.largest_step), seconds});
+      table.rows.push_back({row.model, name, score_words(s.peak, bar.peak),
+                            score_words(s.integral, bar.integral), score_words(s.rms, bar.rms),
+                            touch_words(s, bar), std::move(outcome), known(row.energy_error),
+                            known(row.largest_step), seconds});
     }
   }
   page.table(table);
@@ -58,7 +61,8 @@ void add_scores(ReportPage& page, const BenchmarkAnswer& answer) {
 
 void add_plots(ReportPage& page, const BenchmarkAnswer& answer) {
   for (const auto& [name, track] : answer.reference.tracks) {
-    PlotSpecification plot{name, {answer.asked->x, unit_of_column(answer.asked->x)}, {name, unit_of_column(name)}};
+    PlotSpecification plot{
+        name, {answer.asked->x, unit_of_column(answer.asked->x)}, {name, unit_of_column(name)}};
     plot.width = PlotWidth::half;
     plot.curves.push_back({"archived", track.x, track.q, CurveStyle::line, 0});
     int colour = 0;

@@ -36,7 +36,8 @@ using namespace results;
                                    Console& console);
 
 /// Spring laws and stiffness tables of one wire: law.json, table.csv, report.html, sources in other languages.
-[[nodiscard]] ExitStatus run_distil(const std::filesystem::path& wire, const CommonOptions& options, Console& console);
+[[nodiscard]] ExitStatus run_distil(const std::filesystem::path& wire, const CommonOptions& options,
+                                    Console& console);
 
 /// Every wire model on the same case: compare.json, report.html.
 [[nodiscard]] ExitStatus run_compare(const std::filesystem::path& scenario, const CommonOptions& options,
@@ -51,7 +52,8 @@ using namespace results;
                                       Console& console);
 
 /// Many cases of one file: cases.csv, summary.json, report.html; goes on where it was killed.
-[[nodiscard]] ExitStatus run_sweep(const std::filesystem::path& sweep, const CommonOptions& options, Console& console);
+[[nodiscard]] ExitStatus run_sweep(const std::filesystem::path& sweep, const CommonOptions& options,
+                                   Console& console);
 
 /// Wire models scored on frozen cases with archived histories: benchmark.json, scores.csv, report.html.
 [[nodiscard]] ExitStatus run_benchmark(const std::filesystem::path& benchmark, const CommonOptions& options,

@@ -39,7 +39,8 @@ ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& o
   const std::vector<base::Override> overrides = overrides_of(options);
   const base::TomlNode root = base::parse_toml(file.string(), base::read_text(file));
   const base::TomlNode* schema = root.find("schema");
-  if (schema != nullptr && schema->text.starts_with("snare-scenario/")) return compare_motions(file, options, console);
+  if (schema != nullptr && schema->text.starts_with("snare-scenario/"))
+    return compare_motions(file, options, console);
   const StaticComparison comparison = read_static_comparison(file, overrides);
 
   const ResultFolder folder(options, {"compare.json", "report.html"});
@@ -74,9 +75,10 @@ ExitStatus run_compare(const std::filesystem::path& file, const CommonOptions& o
   if (options.json) return status;
   for (const CaseComparison& one : results) {
     for (const reduction::ModelResult& m : one.models) {
-      console.say(fmt::format("{:<8} {:<26} error {:>9.3g} N  measured {:>9}  {:>9.3g} s  {} numbers", one.name,
-                              m.model, m.largest_error, m.measured_rms ? fmt::format("{:.3g} N", *m.measured_rms) : "-",
-                              m.seconds, m.parameters) +
+      console.say(fmt::format("{:<8} {:<26} error {:>9.3g} N  measured {:>9}  {:>9.3g} s  {} numbers",
+                              one.name, m.model, m.largest_error,
+                              m.measured_rms ? fmt::format("{:.3g} N", *m.measured_rms) : "-", m.seconds,
+                              m.parameters) +
                   (m.why.empty() ? "" : "  " + m.why));
     }
   }

@@ -25,11 +25,15 @@ namespace {
 
 using nlohmann::json;
 
-std::string page_of(const std::string& title, const std::string& subtitle, const json& models, bool interrupted) {
+std::string page_of(const std::string& title, const std::string& subtitle, const json& models,
+                    bool interrupted) {
   ReportPage page(title, subtitle);
   page.doubts({}, interrupted);
   page.heading("Wire models beside the full wire");
-  Table table{"", {"Model"_code, "Steps"_number, "Wall time [s]"_number, "Real-time factor"_number, "Caught"_text}, {}};
+  Table table{
+      "",
+      {"Model"_code, "Steps"_number, "Wall time [s]"_number, "Real-time factor"_number, "Caught"_text},
+      {}};
   for (const json& m : models) {
     table.rows.push_back(
         {m["model"].get<std::string>(), std::to_string(m["cost"]["steps"].get<long>()),
@@ -39,7 +43,8 @@ std::string page_of(const std::string& title, const std::string& subtitle, const
   }
   page.table(table);
   Table contacts{"Peak forces", {"Contact"_text}, {}};
-  for (const json& m : models) contacts.columns.push_back({m["model"].get<std::string>() + " [N]", ColumnKind::number});
+  for (const json& m : models)
+    contacts.columns.push_back({m["model"].get<std::string>() + " [N]", ColumnKind::number});
   for (const auto& [name, value] : models.front()["outcome"]["peak_force_N"].items()) {
     std::vector<Cell> row{name};
     for (const json& m : models) {
@@ -55,14 +60,16 @@ std::string page_of(const std::string& title, const std::string& subtitle, const
 
 }  // namespace
 
-ExitStatus compare_motions(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+ExitStatus compare_motions(const std::filesystem::path& file, const CommonOptions& options,
+                           Console& console) {
   const scenario::Scenario asked = scenario::read_scenario(file, overrides_of(options));
   const scenario::WireMotions& motions = asked.motions;
   const ResultFolder folder(options, {"compare.json", "report.html", "checkpoint.bin"});
   const MotionComparison comparison = with_every_model(file, overrides_of(options), motions);
   const std::vector<MotionRecord> records = run_motions(
       comparison.motions.runs,
-      {options.out / "checkpoint.bin", "compare\n" + motions.input, motions.output.checkpoint_wall_time}, console);
+      {options.out / "checkpoint.bin", "compare\n" + motions.input, motions.output.checkpoint_wall_time},
+      console);
   begin_writing();
   const json compared = comparison_json(asked, comparison, records);
   const json& models = compared["models"];
@@ -72,10 +79,12 @@ ExitStatus compare_motions(const std::filesystem::path& file, const CommonOption
   if (partial) console.complain("interrupted: the results are a part of what was asked for");
   if (!options.json) {
     for (const json& m : models)
-      console.say(fmt::format("{:<14} {} steps, {:.3g} s, {:.3g} times real time", m["model"].get<std::string>(),
-                              m["cost"]["steps"].get<long>(), m["cost"]["wall_s"].get<double>(),
+      console.say(fmt::format("{:<14} {} steps, {:.3g} s, {:.3g} times real time",
+                              m["model"].get<std::string>(), m["cost"]["steps"].get<long>(),
+                              m["cost"]["wall_s"].get<double>(),
                               m["cost"]["real_time_factor"].get<double>()));
-    for (const auto& [model, why] : comparison.left_out) console.say(fmt::format("{:<14} left out: {}", model, why));
+    for (const auto& [model, why] : comparison.left_out)
+      console.say(fmt::format("{:<14} left out: {}", model, why));
     console.say(fmt::format("wrote {}/compare.json, report.html", options.out.string()));
   }
   return status_of(records);

@@ -47,7 +47,8 @@ class Console {
   bool quiet_;
   bool terminal_;
   bool pending_ = false;
-  std::chrono::steady_clock::time_point told_ = std::chrono::steady_clock::now();  ///< when progress was told to a log
+  std::chrono::steady_clock::time_point told_ =
+      std::chrono::steady_clock::now();  ///< when progress was told to a log
 };
 
 /// Writes a result into its file in the folder of the results, and to standard output where that is asked for: the last thing that a

@@ -26,9 +26,9 @@ namespace {
 
 /// Every node of every table: places and forces, in SI-based units and in dimensionless groups.
 void write_table(const std::filesystem::path& file, const reduction::Distillation& distillation) {
-  base::CsvWriter csv(
-      file, {"case", "travel_mm", "position_mm", "slack_mm", "force_N", "stiffness_N_m", "unloading_N", "d_over_L",
-             "s_over_L", "slack_over_L", "F_L2_over_EI", "EA_L2_over_EI", "R_over_L", "friction"});
+  base::CsvWriter csv(file, {"case", "travel_mm", "position_mm", "slack_mm", "force_N", "stiffness_N_m",
+                             "unloading_N", "d_over_L", "s_over_L", "slack_over_L", "F_L2_over_EI",
+                             "EA_L2_over_EI", "R_over_L", "friction"});
   for (std::size_t c = 0; c < distillation.cases.size(); ++c) {
     const reduction::DistilledCase& one = distillation.cases[c];
     const coupling::ForceTable& t = *one.table.loading;
@@ -40,10 +40,11 @@ void write_table(const std::filesystem::path& file, const reduction::Distillatio
           const double* numbers = &t.nodes()[coupling::ForceTable::numbers_a_node * node];
           base::CsvCell back;
           if (one.table.unloading)
-            back = t.force_scale() * one.table.unloading->nodes()[coupling::ForceTable::numbers_a_node * node];
+            back =
+                t.force_scale() * one.table.unloading->nodes()[coupling::ForceTable::numbers_a_node * node];
           csv.row({static_cast<long long>(c + 1), in_mm(d * span), in_mm(s * span), in_mm(e * span),
-                   t.force_scale() * numbers[0], t.force_scale() / span * numbers[1], back, d, s, e, numbers[0],
-                   one.groups.axial, one.groups.radius, one.groups.friction});
+                   t.force_scale() * numbers[0], t.force_scale() / span * numbers[1], back, d, s, e,
+                   numbers[0], one.groups.axial, one.groups.radius, one.groups.friction});
           ++node;
         }
       }
@@ -78,15 +79,17 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
   const std::vector<base::Override> overrides = overrides_of(options);
   const reduction::WireFile wire = reduction::read_wire_file(file, overrides);
 
-  const ResultFolder folder(options, {"law.json", "table.csv", "report.html", "distil.journal", "law.hpp", "law.c",
-                                      "law.h", "law.py", "law.mo", "law_mujoco.xml", "law_mujoco_linear.xml",
-                                      "law_mujoco_loop.xml", "law_adams.adm", "law_simulink.csv"});
+  const ResultFolder folder(
+      options, {"law.json", "table.csv", "report.html", "distil.journal", "law.hpp", "law.c", "law.h",
+                "law.py", "law.mo", "law_mujoco.xml", "law_mujoco_linear.xml", "law_mujoco_loop.xml",
+                "law_adams.adm", "law_simulink.csv"});
   const std::filesystem::path journal = options.out / "distil.journal";
   std::atomic<bool> journalled = true;
   const KeepWhenInterrupted keeping(
       [&journal, &journalled]() -> std::string {
         if (!journalled) return "what was finished is not kept: the journal could not be written";
-        return fmt::format("the curves that were finished are kept in {}; the same command goes on", journal.string());
+        return fmt::format("the curves that were finished are kept in {}; the same command goes on",
+                           journal.string());
       },
       std::nullopt);
   const reduction::Distillation result = reduction::distil(
@@ -102,14 +105,16 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
   console.end_progress();
   begin_writing();
   if (!result.report.usable()) {
-    console.complain(journalled ? fmt::format("{}; the curves that were reached are kept in {}", result.report.message,
-                                              journal.string())
-                                : result.report.message + "; nothing is kept: the journal could not be written");
+    console.complain(journalled
+                         ? fmt::format("{}; the curves that were reached are kept in {}",
+                                       result.report.message, journal.string())
+                         : result.report.message + "; nothing is kept: the journal could not be written");
     if (options.json) {
-      const nlohmann::json word{{"schema", "snare-law/1"},
-                                {"interrupted", result.report.termination == numerics::Termination::interrupted},
-                                {"stopped", result.report.message},
-                                {"kept", journalled ? nlohmann::json(journal.string()) : nlohmann::json()}};
+      const nlohmann::json word{
+          {"schema", "snare-law/1"},
+          {"interrupted", result.report.termination == numerics::Termination::interrupted},
+          {"stopped", result.report.message},
+          {"kept", journalled ? nlohmann::json(journal.string()) : nlohmann::json()}};
       print(word.dump(1) + "\n");
     }
     return ExitStatus::solver_stopped;
@@ -118,28 +123,29 @@ ExitStatus run_distil(const std::filesystem::path& file, const CommonOptions& op
   for (const std::string& warning : warnings) console.warn(warning);
   write_table(options.out / "table.csv", result);
   for (std::size_t c = 0; c < result.cases.size(); ++c) {
-    write_exports(c == 0 ? options.out : options.out / fmt::format("case_{}", c + 1), wire, result.cases[c], c + 1);
+    write_exports(c == 0 ? options.out : options.out / fmt::format("case_{}", c + 1), wire, result.cases[c],
+                  c + 1);
   }
   base::write_text(options.out / "report.html", distil_report_html(wire, result, warnings));
-  nlohmann::json written = law_json(wire, result);
-  written["warnings"] = warnings;
-  write_result(options, "law.json", written);
+  write_result(options, "law.json", law_json(wire, result));
   std::filesystem::remove(journal);
   if (options.json) return ExitStatus::done;
   for (const reduction::DistilledCase& one : result.cases) {
     const reduction::TableError& e = one.table.loading_error;
     const auto& axes = one.table.loading->axes();
-    console.say(fmt::format("table {} x {} x {}: within {:.3g} N ({:.2g} % of {:.4g} N), {} curves of the full wire",
-                            axes[0].size(), axes[1].size(), axes[2].size(), e.bound, 100.0 * e.bound / e.force_range,
-                            e.force_range, one.table.curves));
+    console.say(
+        fmt::format("table {} x {} x {}: within {:.3g} N ({:.2g} % of {:.4g} N), {} curves of the full wire",
+                    axes[0].size(), axes[1].size(), axes[2].size(), e.bound, 100.0 * e.bound / e.force_range,
+                    e.force_range, one.table.curves));
     if (e.bound > wire.settings.tolerance * e.force_range) {
       console.say(fmt::format("  above the tolerance of {:g} %: the largest number of knots is reached",
                               100.0 * wire.settings.tolerance));
     }
     for (const reduction::DistilledPlace& place : one.places) {
       for (const reduction::FittedLaw& law : place.laws) {
-        console.say(fmt::format("  s = {:.4g} mm  {:<26} largest error {:.3g} N of {:.4g} N", 1e3 * place.position,
-                                law.form->name(), law.error.largest_force, law.error.force_range));
+        console.say(fmt::format("  s = {:.4g} mm  {:<26} largest error {:.3g} N of {:.4g} N",
+                                1e3 * place.position, law.form->name(), law.error.largest_force,
+                                law.error.force_range));
       }
     }
   }

@@ -42,7 +42,8 @@ std::optional<Eigen::Vector3d> three_numbers(const char* option, const std::stri
 }
 
 reduction::MujocoMeeting meeting_of(const ExportOptions& asked) {
-  reduction::MujocoMeeting meeting{asked.body, three_numbers("--axis", asked.axis), {}, asked.first_touch_mm * mm};
+  reduction::MujocoMeeting meeting{
+      asked.body, three_numbers("--axis", asked.axis), {}, asked.first_touch_mm * mm};
   if (meeting.axis && !(meeting.axis->norm() > 1e-9))
     throw InputError({"", 0, "--axis", asked.axis, "must not be all zero"});
   meeting.point = mm * three_numbers("--point-mm", asked.point_mm).value_or(Eigen::Vector3d::Zero());
@@ -50,19 +51,23 @@ reduction::MujocoMeeting meeting_of(const ExportOptions& asked) {
 }
 
 /// Position of the law [m].
-double position_of(const ExportOptions& asked, const scenario::DistilledLaw& law, double slack, Console& console) {
+double position_of(const ExportOptions& asked, const scenario::DistilledLaw& law, double slack,
+                   Console& console) {
   if (asked.position_mm) {
     const double position = *asked.position_mm * mm;
     if (!law.in_range(0.0, position, slack))
-      throw InputError({"", 0, "--position-mm", fmt::format("{:g}", *asked.position_mm),
-                        fmt::format("must be {:g} to {:g}, the positions of the law{}", law.position[0] / mm,
-                                    law.position[1] / mm, law.loading->mirrored() ? ", or their mirror image" : "")});
+      throw InputError(
+          {"", 0, "--position-mm", fmt::format("{:g}", *asked.position_mm),
+           fmt::format("must be {:g} to {:g}, the positions of the law{}", law.position[0] / mm,
+                       law.position[1] / mm, law.loading->mirrored() ? ", or their mirror image" : "")});
     return position;
   }
-  if (law.losses.empty()) throw InputError({"", 0, "--position-mm", "", "must be given: the law has no law positions"});
+  if (law.losses.empty())
+    throw InputError({"", 0, "--position-mm", "", "must be given: the law has no law positions"});
   const double middle = 0.5 * law.wire.span;
-  const auto nearest = std::ranges::min_element(
-      law.losses, {}, [middle](const scenario::DistilledLoss& one) { return std::abs(one.position - middle); });
+  const auto nearest = std::ranges::min_element(law.losses, {}, [middle](const scenario::DistilledLoss& one) {
+    return std::abs(one.position - middle);
+  });
   if (law.losses.size() > 1) {
     std::string all;
     for (const scenario::DistilledLoss& one : law.losses)
@@ -81,7 +86,8 @@ reduction::MujocoLaw law_of(const scenario::DistilledLaw& law, double position, 
     if (nominal && std::abs(one.position - position) < same_place) loss = one;
   }
   for (const scenario::SimpleLaw& one : law.simple) {
-    if (nominal && one.name == "linear" && std::abs(one.position - position) < same_place) linear = one.values.front();
+    if (nominal && one.name == "linear" && std::abs(one.position - position) < same_place)
+      linear = one.values.front();
   }
   return reduction::mujoco_law(position, law.loading->curve(position, slack), linear, loss);
 }
@@ -117,18 +123,18 @@ ExitStatus run_export(const ExportOptions& asked, const CommonOptions& options, 
       continue;
     }
     files.emplace_back(reduction::file_of(form), std::move(model.text));
-    console.say(fmt::format("{}: {}; readers: {}", reduction::file_of(form), reduction::mujoco_words(one, form),
-                            reduction::readers_of(form)));
+    console.say(fmt::format("{}: {}; readers: {}", reduction::file_of(form),
+                            reduction::mujoco_words(one, form), reduction::readers_of(form)));
   }
   const ResultFolder folder(options, {"law_mujoco.xml", "law_mujoco_linear.xml", "law_mujoco_loop.xml"});
   begin_writing();
   for (const auto& [name, text] : files) base::write_text(options.out / name, text);
   for (const std::string& note : notes) console.say(note);
-  console.say(
-      fmt::format("stable at MuJoCo's default step of 2 ms on {:.2g} kg and more, good to 0.1 % on {:.2g} kg and more; "
-                  "a lighter body "
-                  "needs a smaller step",
-                  0.04 * reduction::sufficient_mass(one), reduction::sufficient_mass(one)));
+  console.say(fmt::format(
+      "stable at MuJoCo's default step of 2 ms on {:.2g} kg and more, good to 0.1 % on {:.2g} kg and more; "
+      "a lighter body "
+      "needs a smaller step",
+      0.04 * reduction::sufficient_mass(one), reduction::sufficient_mass(one)));
   console.say(fmt::format("wrote {} files to {}", files.size(), options.out.string()));
   return ExitStatus::done;
 }

@@ -9,7 +9,7 @@
 #include <exception>
 
 int main() {
-  snare::app::catch_interrupts(snare::app::release_result_folder);
+  snare::app::catch_interrupts(snare::base::release_result_folders);
   try {
     const snare::app::KeepWhenInterrupted word({}, "");
     snare::app::CommonOptions options;

@@ -58,9 +58,12 @@ Work& work() {
   } catch (const std::exception& error) {
     kept = std::string("what was finished cannot be kept: ") + error.what();
   }
-  tell(fmt::format("{}interrupted while {}: {}\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "", w.stage, kept));
+  if (!kept.empty())
+    tell(fmt::format("{}interrupted while {}: {}\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "", w.stage,
+                     kept));
   if (!w.json_schema.empty()) {
-    const nlohmann::json word{{"schema", w.json_schema}, {"interrupted", true}, {"stage", w.stage}, {"kept", kept}};
+    const nlohmann::json word{
+        {"schema", w.json_schema}, {"interrupted", true}, {"stage", w.stage}, {"kept", kept}};
     const std::string text = word.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     [[maybe_unused]] const std::size_t ignored = std::fwrite(text.data(), 1, text.size(), stdout);
   }
@@ -105,7 +108,8 @@ void set_stage(const std::string& stage) {
   work().stage = stage;
 }
 
-KeepWhenInterrupted::KeepWhenInterrupted(std::function<std::string()> keep, std::optional<std::string> json_schema) {
+KeepWhenInterrupted::KeepWhenInterrupted(std::function<std::string()> keep,
+                                         std::optional<std::string> json_schema) {
   const std::scoped_lock lock(work().mutex);
   keep_before_ = std::exchange(work().keep, std::move(keep));
   schema_before_ = work().json_schema;
@@ -121,7 +125,8 @@ KeepWhenInterrupted::~KeepWhenInterrupted() {
 void begin_writing() {
   Work& w = work();
   std::unique_lock lock(w.mutex);
-  if (w.state == Work::State::left) w.changed.wait(lock, [] { return false; });  // the process is about to end
+  if (w.state == Work::State::left)
+    w.changed.wait(lock, [] { return false; });  // the process is about to end
   w.state = Work::State::writing;
   w.changed.notify_all();
 }

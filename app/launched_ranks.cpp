@@ -30,14 +30,16 @@ std::unique_ptr<study::Ranks> launched_ranks() {
     const std::filesystem::path file = here / place;
     if (!std::filesystem::exists(file)) continue;
     void* library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
-    if (library == nullptr) throw std::runtime_error(std::string("cannot open ") + file.string() + ": " + ::dlerror());
+    if (library == nullptr)
+      throw std::runtime_error(std::string("cannot open ") + file.string() + ": " + ::dlerror());
     using Make = study::Ranks* (*)();
     const auto make = reinterpret_cast<Make>(::dlsym(library, "snare_make_ranks"));
     if (make == nullptr) throw std::runtime_error(file.string() + " has no snare_make_ranks");
     return std::unique_ptr<study::Ranks>(make());
   }
   throw std::runtime_error(
-      "started by mpirun, but this build has no MPI: install libopenmpi-dev (Debian), configure and build again");
+      "started by mpirun, but this build has no MPI: install libopenmpi-dev (Debian), configure and build "
+      "again");
 }
 
 }  // namespace snare::app

@@ -65,36 +65,43 @@ struct Verb {
 };
 
 const Verb verbs[] = {
-    {"reproduce", "the published static wire tests with the computed curves, or all figures of a paper", "WHAT",
-     "experiment file, or a paper: abiko, na, honda or all; the published tests when left out", false,
+    {"reproduce", "the published static wire tests with the computed curves, or all figures of a paper",
+     "WHAT", "experiment file, or a paper: abiko, na, honda or all; the published tests when left out", false,
      "snare reproduce abiko --out out/abiko", snare::app::run_reproduce_word, "snare-reproduce/1"},
-    {"push", "predict the force-displacement curves of the declared model", "EXPERIMENT.toml", "experiment file", true,
-     "snare push data/experiments/published_static.toml --out out/push --set pusher.friction=0.2", snare::app::run_push,
-     "snare-push/1"},
-    {"fit", "calibrate the declared model's free numbers", "FILE.toml", "experiment file, or records in time", true,
-     "snare fit data/experiments/published_static.toml --out out/fit", snare::app::run_fit, "snare-fit/1"},
-    {"trace", "find the effect that the declared model lacks", "FILE.toml", "experiment file, or records in time", true,
-     "snare trace data/experiments/published_static.toml --out out/trace", snare::app::run_trace, "snare-trace/1"},
-    {"distil", "reduced spring laws and stiffness tables with their error bounds", "WIRE.toml", "wire file", true,
-     "snare distil data/wires/traced_published.toml --out out/distil", snare::app::run_distil, "snare-law/1"},
+    {"push", "predict the force-displacement curves of the declared model", "EXPERIMENT.toml",
+     "experiment file", true,
+     "snare push data/experiments/published_static.toml --out out/push --set pusher.friction=0.2",
+     snare::app::run_push, "snare-push/1"},
+    {"fit", "calibrate the declared model's free numbers", "FILE.toml", "experiment file, or records in time",
+     true, "snare fit data/experiments/published_static.toml --out out/fit", snare::app::run_fit,
+     "snare-fit/1"},
+    {"trace", "find the effect that the declared model lacks", "FILE.toml",
+     "experiment file, or records in time", true,
+     "snare trace data/experiments/published_static.toml --out out/trace", snare::app::run_trace,
+     "snare-trace/1"},
+    {"distil", "reduced spring laws and stiffness tables with their error bounds", "WIRE.toml", "wire file",
+     true, "snare distil data/wires/traced_published.toml --out out/distil", snare::app::run_distil,
+     "snare-law/1"},
     {"compare", "the same case with every wire model: accuracy and cost side by side", "SCENARIO.toml",
      "experiment, wire or scenario file", true,
      "snare compare data/experiments/published_static.toml --out out/compare", snare::app::run_compare,
      "snare-comparison/1"},
-    {"simulate", "a dynamic scenario: wires, bodies, arms and snares in one system of equations", "SCENARIO.toml",
-     "scenario file", true, "snare simulate data/scenarios/air_table.toml --out out/air_table",
-     snare::app::run_simulate, "snare-summary/1"},
+    {"simulate", "a dynamic scenario: wires, bodies, arms and snares in one system of equations",
+     "SCENARIO.toml", "scenario file", true,
+     "snare simulate data/scenarios/air_table.toml --out out/air_table", snare::app::run_simulate,
+     "snare-summary/1"},
     {"ringdown", "damping of a wire from its free vibration", "RINGDOWN.toml", "ring-down file", true,
      "snare ringdown data/experiments/ringdown.toml --out out/ringdown", snare::app::run_ringdown,
      "snare-ringdown-result/1"},
     {"sweep", "many cases of a file at once; goes on where it was killed", "SWEEP.toml", "sweep file", true,
-     "snare sweep data/sweeps/pin_offsets.toml --out out/sweep", snare::app::run_sweep, "snare-sweep-summary/1"},
+     "snare sweep data/sweeps/pin_offsets.toml --out out/sweep", snare::app::run_sweep,
+     "snare-sweep-summary/1"},
     {"benchmark", "wire models, and anybody's history, scored on frozen cases with archived histories",
      "BENCHMARK.toml", "benchmark file; the shipped ring when left out", false,
      "snare benchmark --case impact_middle --against theirs.csv", snare::app::run_benchmark,
      "snare-benchmark-result/1"},
-    {"validate", "every validation row: reference, its kind, value, error, limit, verdict", nullptr, nullptr, false,
-     "snare validate --out out/validate",
+    {"validate", "every validation row: reference, its kind, value, error, limit, verdict", nullptr, nullptr,
+     false, "snare validate --out out/validate",
      [](const std::filesystem::path&, const CommonOptions& options, Console& console) {
        return snare::app::run_validate(options, console);
      },
@@ -127,13 +134,15 @@ ExitStatus guarded(const CommonOptions& options, const char* schema, const Run& 
 /// Words of the command line that are none of ours, with the nearest one: the library says only that they were not expected.
 void check_words(const CLI::App& app, int argc, char** argv) {
   const CLI::App* verb = &app;
-  const auto refuse = [&verb, &app](const char* kind, const std::string& word, const std::vector<std::string>& known) {
+  const auto refuse = [&verb, &app](const char* kind, const std::string& word,
+                                    const std::vector<std::string>& known) {
     const std::string nearest = snare::base::nearest_word(word, known);
     std::string all;
     for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
-    throw snare::base::InputError({"", 0, verb == &app ? "snare" : "snare " + verb->get_name(), word,
-                                   std::string("unknown ") + kind +
-                                       (nearest.empty() ? "; there are: " + all : "; did you mean " + nearest + "?")});
+    throw snare::base::InputError(
+        {"", 0, verb == &app ? "snare" : "snare " + verb->get_name(), word,
+         std::string("unknown ") + kind +
+             (nearest.empty() ? "; there are: " + all : "; did you mean " + nearest + "?")});
   };
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
@@ -193,14 +202,16 @@ void add_export(CLI::App& app, snare::app::ExportOptions& asked, CommonOptions& 
                    "direction of the push in the body's frame: 0,1,0; that of its slide joint when left out");
   verb->add_option("--point-mm", asked.point_mm,
                    "point that meets the wire, in the body's frame: 50,100,0; its origin when left out");
-  verb->add_option("--first-touch-mm", asked.first_touch_mm, "travel of the body from the model's pose to first touch")
+  verb->add_option("--first-touch-mm", asked.first_touch_mm,
+                   "travel of the body from the model's pose to first touch")
       ->capture_default_str();
   verb->add_option("--case", asked.number, "case of the law")->capture_default_str();
   options.out = "out/export";
   verb->add_option("--out", options.out, "folder for the results")->capture_default_str();
   verb->add_flag("--quiet", options.quiet, "no messages but errors");
   verb->footer(
-      "Example: snare export out/distil/law.json --mujoco examples/air_table.xml --body target --point-mm 50,100,0");
+      "Example: snare export out/distil/law.json --mujoco examples/air_table.xml --body target --point-mm "
+      "50,100,0");
 }
 
 int run(int argc, char** argv) {
@@ -218,15 +229,18 @@ int run(int argc, char** argv) {
     const Verb& verb = verbs[k];
     Parsed& p = parsed[k];
     p.command = app.add_subcommand(verb.name, verb.what);
-    if (verb.argument != nullptr) p.command->add_option(verb.argument, p.file, verb.meaning)->required(verb.needed);
+    if (verb.argument != nullptr)
+      p.command->add_option(verb.argument, p.file, verb.meaning)->required(verb.needed);
     add_common(*p.command, p.options, std::string("out/") + verb.name);
     if (verb.run == snare::app::run_sweep)
       p.command->add_option("--case", p.options.only_case, "run this case alone, as its verb would")
           ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000'000}, "CASE from 1 to 1e12"));
     if (verb.run == snare::app::run_benchmark) {
       p.command->add_option("--case", p.options.only_named, "this case alone, by its name");
-      p.command->add_option("--against", p.options.against, "CSV file of a history that is scored on the case, too");
-      p.command->add_flag("--archive", p.options.archive, "make the archived histories anew, beside the file");
+      p.command->add_option("--against", p.options.against,
+                            "CSV file of a history that is scored on the case, too");
+      p.command->add_flag("--archive", p.options.archive,
+                          "make the archived histories anew, beside the file");
     }
     p.command->footer(std::string("Example: ") + verb.example);
   }
@@ -244,7 +258,7 @@ int run(int argc, char** argv) {
   snare::app::ExportOptions exported;
   add_export(app, exported, export_options);
 
-  snare::app::catch_interrupts(snare::app::release_result_folder);
+  snare::app::catch_interrupts(snare::base::release_result_folders);
   try {
     check_words(app, argc, argv);
     app.parse(argc, argv);
@@ -261,20 +275,25 @@ int run(int argc, char** argv) {
 
   ExitStatus status = ExitStatus::failure;
   if (arm_show->parsed()) {
-    status = guarded(arm_options, "snare-arm-show/1",
-                     [&](Console& c) { return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c); });
+    status = guarded(arm_options, "snare-arm-show/1", [&](Console& c) {
+      return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c);
+    });
   }
+  new_options.command = "snare new " + snare::base::shell_word(new_what);
   if (app.get_subcommand("new")->parsed())
-    status = guarded(new_options, "", [&](Console& c) { return snare::app::run_new(new_what, new_options, c); });
-  if (app.get_subcommand("export")->parsed())
     status =
-        guarded(export_options, "", [&](Console& c) { return snare::app::run_export(exported, export_options, c); });
+        guarded(new_options, "", [&](Console& c) { return snare::app::run_new(new_what, new_options, c); });
+  export_options.command = "snare export " + snare::base::shell_word(exported.law.string());
+  if (app.get_subcommand("export")->parsed())
+    status = guarded(export_options, "",
+                     [&](Console& c) { return snare::app::run_export(exported, export_options, c); });
   for (std::size_t k = 0; k < std::size(verbs); ++k) {
     Parsed& p = parsed[k];
-    p.options.command =
-        std::string("snare ") + verbs[k].name + (p.file.empty() ? "" : " " + snare::base::shell_word(p.file.string()));
+    p.options.command = std::string("snare ") + verbs[k].name +
+                        (p.file.empty() ? "" : " " + snare::base::shell_word(p.file.string()));
     if (p.command->parsed())
-      status = guarded(p.options, verbs[k].schema, [&](Console& c) { return verbs[k].run(p.file, p.options, c); });
+      status =
+          guarded(p.options, verbs[k].schema, [&](Console& c) { return verbs[k].run(p.file, p.options, c); });
   }
   return static_cast<int>(status);
 }

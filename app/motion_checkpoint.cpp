@@ -66,9 +66,10 @@ void fields(auto& a, WireLoads& l) {
   a(l.velocities)(l.tensions)(l.curvatures);
 }
 void fields(auto& a, MotionSample& s) {
-  static_assert(sizeof(MotionSample) == sizeof(double) + 9 * sizeof(std::vector<double>) + 13 * sizeof(double));
-  a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.wire_loads)(s.law_tensions)(s.arms)(s.welds)(s.bushings)(
-      s.energy)(s.momentum)(s.angular_momentum);
+  static_assert(sizeof(MotionSample) ==
+                sizeof(double) + 9 * sizeof(std::vector<double>) + 13 * sizeof(double));
+  a(s.time)(s.bodies)(s.contacts)(s.wires)(s.mount_forces)(s.wire_loads)(s.law_tensions)(s.arms)(s.welds)(
+      s.bushings)(s.energy)(s.momentum)(s.angular_momentum);
 }
 void fields(auto& a, MotionEvent& e) {
   static_assert(sizeof(MotionEvent) == 5 * sizeof(double));
@@ -90,15 +91,17 @@ void fields(auto& a, LeftOutInertia& i) {
   a(i.kinetic)(i.force);
 }
 void fields(auto& a, MotionSums& s) {
-  a(s.events)(s.peak_force)(s.strength)(s.left_out)(s.wires)(s.phases)(s.largest_penetration)(s.largest_drift)(
-      s.start_energy)(s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(s.wall_seconds)(s.effort);
+  a(s.events)(s.peak_force)(s.strength)(s.left_out)(s.wires)(s.phases)(s.largest_penetration)(
+      s.largest_drift)(s.start_energy)(s.start_momentum)(s.start_angular_momentum)(s.samples)(s.statistics)(
+      s.wall_seconds)(s.effort);
 }
 void fields(auto& a, MotionState& s) {
   a(s.time)(s.unknowns)(s.rates)(s.integrals)(s.memory)(s.sums);
 }
 void fields(auto& a, MotionResult& r) {
-  a(r.report)(r.events)(r.energy)(r.momentum_error)(r.angular_momentum_error)(r.peak_force)(r.strength)(r.left_out)(
-      r.wires)(r.phases)(r.impulse)(r.largest_penetration)(r.largest_drift)(r.statistics)(r.wall_seconds)(r.last);
+  a(r.report)(r.events)(r.energy)(r.momentum_error)(r.angular_momentum_error)(r.peak_force)(r.strength)(
+      r.left_out)(r.wires)(r.phases)(r.impulse)(r.largest_penetration)(r.largest_drift)(r.statistics)(
+      r.wall_seconds)(r.last);
 }
 }  // namespace snare::coupling
 
@@ -130,7 +133,8 @@ std::uint64_t key_of(const std::string& input) {
 }  // namespace
 
 // The mark, the key, the fingerprint of the content, the content.
-void write_motion_checkpoint(const std::filesystem::path& file, const std::string& input, MotionProgress& progress) {
+void write_motion_checkpoint(const std::filesystem::path& file, const std::string& input,
+                             MotionProgress& progress) {
   base::ByteWriter content;
   content(progress);
   base::ByteWriter head;

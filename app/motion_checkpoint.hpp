@@ -20,7 +20,8 @@ struct MotionProgress {
 
 /// Writes a checkpoint; the file is either the old one or the new one at any time. `input`: what the progress belongs to.
 /// A failure of the system throws std::system_error.
-void write_motion_checkpoint(const std::filesystem::path& file, const std::string& input, MotionProgress& progress);
+void write_motion_checkpoint(const std::filesystem::path& file, const std::string& input,
+                             MotionProgress& progress);
 
 /// What a checkpoint says, or why it is of no use.
 struct LoadedCheckpoint {
@@ -29,6 +30,7 @@ struct LoadedCheckpoint {
 };
 
 /// Reads a checkpoint that belongs to this input; never throws for what is in the file.
-[[nodiscard]] LoadedCheckpoint read_motion_checkpoint(const std::filesystem::path& file, const std::string& input);
+[[nodiscard]] LoadedCheckpoint read_motion_checkpoint(const std::filesystem::path& file,
+                                                      const std::string& input);
 
 }  // namespace snare::app

@@ -30,7 +30,8 @@ class Runs {
     if (!loaded.progress || loaded.progress->finished.size() >= motions.size()) return;
     progress_ = std::move(*loaded.progress);
     console.say(fmt::format("goes on from {}: {} at {:.6g} s", policy.file.string(),
-                            motions[progress_.finished.size()].name, progress_.state ? progress_.state->time : 0.0));
+                            motions[progress_.finished.size()].name,
+                            progress_.state ? progress_.state->time : 0.0));
   }
 
   [[nodiscard]] std::vector<MotionRecord> all() {
@@ -74,7 +75,8 @@ class Runs {
         [&](const MotionSample& s) {
           samples.push_back(s);
           const double share = (s.time - begun) / (duration - begun);
-          console_.progress(fmt::format("{}: {:.3f} of {:.3f} s, {:.0f} s to go", asked.name, s.time, duration,
+          console_.progress(fmt::format("{}: {:.3f} of {:.3f} s, {:.0f} s to go", asked.name, s.time,
+                                        duration,
                                         share > 0.0 ? seconds_since(begin) * (1.0 - share) / share : 0.0));
           return false;
         },
@@ -92,14 +94,15 @@ class Runs {
     const std::scoped_lock lock(mutex_);
     kept_ = stalled && progress_.state && progress_.finished.size() + 1 == motions_.size();
     if (!result.report.usable()) {
-      console_.complain(fmt::format("{}: {} (what was reached is kept{})", asked.name, result.report.message,
-                                    stopped ? "; the same command goes on from the last checkpoint"
-                                    : kept_
-                                        ? "; with a smaller solver.least_advance_s the same command goes on from there"
-                                    : stalled ? "; a smaller solver.least_advance_s gives it more"
-                                              : ""));
+      console_.complain(
+          fmt::format("{}: {} (what was reached is kept{})", asked.name, result.report.message,
+                      stopped ? "; the same command goes on from the last checkpoint"
+                      : kept_ ? "; with a smaller solver.least_advance_s the same command goes on from there"
+                      : stalled ? "; a smaller solver.least_advance_s gives it more"
+                                : ""));
     }
-    if (stopped || kept_) write();  // before the motion counts as finished: it goes on from its last checkpoint
+    if (stopped || kept_)
+      write();  // before the motion counts as finished: it goes on from its last checkpoint
     progress_.finished.push_back({std::move(samples), std::move(result)});
     if (stopped) return false;
     progress_.samples.clear();
@@ -115,7 +118,8 @@ class Runs {
       write_motion_checkpoint(policy_.file, policy_.input, progress_);
       failed_ = false;
     } catch (const std::system_error& error) {
-      if (!failed_) console_.complain(fmt::format("{}; the run goes on without this checkpoint", error.what()));
+      if (!failed_)
+        console_.complain(fmt::format("{}; the run goes on without this checkpoint", error.what()));
       failed_ = true;
     }
   }
@@ -132,16 +136,16 @@ class Runs {
 
 }  // namespace
 
-std::vector<MotionRecord> run_motions(const std::vector<scenario::NamedMotion>& motions, const CheckpointPolicy& policy,
-                                      Console& console) {
+std::vector<MotionRecord> run_motions(const std::vector<scenario::NamedMotion>& motions,
+                                      const CheckpointPolicy& policy, Console& console) {
   Runs runs(motions, policy, console);
   const KeepWhenInterrupted keeping([&runs] { return runs.keep(); }, std::nullopt);
   return runs.all();
 }
 
 ExitStatus status_of(const std::vector<MotionRecord>& records) {
-  const bool fine =
-      std::all_of(records.begin(), records.end(), [](const MotionRecord& r) { return r.result.report.usable(); });
+  const bool fine = std::all_of(records.begin(), records.end(),
+                                [](const MotionRecord& r) { return r.result.report.usable(); });
   return fine ? ExitStatus::done : ExitStatus::solver_stopped;
 }
 

@@ -28,18 +28,19 @@ struct StartingSet {
 };
 
 const std::array<StartingSet, 3>& starting_sets() {
-  static const std::array<StartingSet, 3> sets{{{"capture",
-                                                 {{"scenarios/ssrms_htv_capture.toml", "capture.toml"},
-                                                  {"arms/ssrms_on_station.toml", "arms/ssrms_on_station.toml"},
-                                                  {"arms/ssrms_like.urdf", "arms/ssrms_like.urdf"},
-                                                  {"arms/station_like.urdf", "arms/station_like.urdf"}},
-                                                 "simulate"},
-                                                {"experiment",
-                                                 {{"starter/experiment.toml", "experiment.toml"},
-                                                  {"starter/middle.csv", "middle.csv"},
-                                                  {"starter/quarter.csv", "quarter.csv"}},
-                                                 "trace"},
-                                                {"wire", {{"wires/traced_published.toml", "wire.toml"}}, "distil"}}};
+  static const std::array<StartingSet, 3> sets{
+      {{"capture",
+        {{"scenarios/ssrms_htv_capture.toml", "capture.toml"},
+         {"arms/ssrms_on_station.toml", "arms/ssrms_on_station.toml"},
+         {"arms/ssrms_like.urdf", "arms/ssrms_like.urdf"},
+         {"arms/station_like.urdf", "arms/station_like.urdf"}},
+        "simulate"},
+       {"experiment",
+        {{"starter/experiment.toml", "experiment.toml"},
+         {"starter/middle.csv", "middle.csv"},
+         {"starter/quarter.csv", "quarter.csv"}},
+        "trace"},
+       {"wire", {{"wires/traced_published.toml", "wire.toml"}}, "distil"}}};
   return sets;
 }
 
@@ -55,11 +56,13 @@ std::string with_own_paths(std::string text) {
 
 ExitStatus run_new(const std::string& what, const CommonOptions& options, Console& console) {
   const auto& sets = starting_sets();
-  const auto set = std::find_if(sets.begin(), sets.end(), [&](const StartingSet& s) { return what == s.name; });
+  const auto set =
+      std::find_if(sets.begin(), sets.end(), [&](const StartingSet& s) { return what == s.name; });
   if (set == sets.end())
     throw base::InputError({"", 0, "new", what, "must be \"capture\", \"experiment\" or \"wire\""});
-  if (options.out.empty()) throw base::InputError({"", 0, "--out", "", "must name a folder"});
-  require_folder(options.out);
+  std::vector<std::string> names;
+  for (const auto& [from, to] : set->files) names.emplace_back(to);
+  const ResultFolder folder(options, names);
   // All or nothing: what is there stays as it is.
   std::vector<base::InputProblem> problems;
   std::vector<std::pair<fs::path, std::string>> files;
@@ -82,7 +85,8 @@ ExitStatus run_new(const std::string& what, const CommonOptions& options, Consol
     throw;
   }
   for (const auto& [path, text] : files) console.say(path.string());
-  console.say(fmt::format("next: snare {} {} --out {}", set->verb, base::shell_word(files.front().first.string()),
+  console.say(fmt::format("next: snare {} {} --out {}", set->verb,
+                          base::shell_word(files.front().first.string()),
                           base::shell_word((options.out / "out").string())));
   return ExitStatus::done;
 }

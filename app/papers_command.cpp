@@ -161,8 +161,10 @@ class Work {
     base::write_text(options_.out / made.page(), paper_page(*made.paper, made.figures, version()));
   }
   void write_json() const {
-    json all{
-        {"schema", "snare-figures/1"}, {"version", version()}, {"interrupted", !whole()}, {"papers", json::array()}};
+    json all{{"schema", "snare-figures/1"},
+             {"version", version()},
+             {"interrupted", !whole()},
+             {"papers", json::array()}};
     for (const MadePaper& made : made_)
       if (!made.figures.empty()) all["papers"].push_back(paper_json(made));
     write_result(options_, figures_file, all);
@@ -170,8 +172,9 @@ class Work {
 
   [[nodiscard]] std::string words_of(const MadePaper& made) const {
     const auto [rows, out] = made.rows_and_out();
-    return fmt::format("{}: {} figures and tables, {} numbers and statements compared, {} out of their limit; wrote {}",
-                       made.paper->name, made.figures.size(), rows, out, (options_.out / made.page()).string());
+    return fmt::format(
+        "{}: {} figures and tables, {} numbers and statements compared, {} out of their limit; wrote {}",
+        made.paper->name, made.figures.size(), rows, out, (options_.out / made.page()).string());
   }
 
   /// Writes the finished figures and names them.
@@ -193,7 +196,8 @@ class Work {
 
 }  // namespace
 
-ExitStatus run_reproduce_word(const std::filesystem::path& what, const CommonOptions& options, Console& console) {
+ExitStatus run_reproduce_word(const std::filesystem::path& what, const CommonOptions& options,
+                              Console& console) {
   const std::string word = what.string();
   std::vector<const Paper*> asked = papers::all_papers();
   std::vector<std::string> names;
@@ -201,15 +205,16 @@ ExitStatus run_reproduce_word(const std::filesystem::path& what, const CommonOpt
   names.emplace_back(all_of_them);
   if (std::ranges::find(names, word) == names.end()) {
     if (!word.empty() && !what.has_extension() && !std::filesystem::exists(what))
-      throw base::InputError({"", 0, "snare reproduce", word,
-                              fmt::format("must be an experiment file or a paper: {}", fmt::join(names, ", "))});
+      throw base::InputError(
+          {"", 0, "snare reproduce", word,
+           fmt::format("must be an experiment file or a paper: {}", fmt::join(names, ", "))});
     return run_reproduce(what, options, console);
   }
   if (!options.overrides.empty())
-    throw base::InputError(
-        {"--set", 0, options.overrides.front(), "",
-         "a paper is made from the shipped files, so there is no key to set; snare simulate and snare reproduce "
-         "EXPERIMENT.toml take one"});
+    throw base::InputError({"--set", 0, options.overrides.front(), "",
+                            "a paper is made from the shipped files, so there is no key to set; snare "
+                            "simulate and snare reproduce "
+                            "EXPERIMENT.toml take one"});
   if (word != all_of_them) std::erase_if(asked, [&word](const Paper* paper) { return paper->name != word; });
   const ResultFolder folder(options, {"abiko.html", "na.html", "honda.html", figures_file});
   return Work(options, asked).all(console);

@@ -27,14 +27,14 @@ ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& opti
   const std::filesystem::path csv = options.out / "curves.csv";
   write_curves(csv, experiment.series, predictions);
   const auto warnings = pushed.document["warnings"].get<std::vector<std::string>>();
-  base::write_text(options.out / "report.html",
-                   push_report_html(experiment, predictions, warnings, pushed.document["interrupted"].get<bool>()));
+  base::write_text(options.out / "report.html", push_report_html(experiment, predictions, warnings,
+                                                                 pushed.document["interrupted"].get<bool>()));
   ExitStatus status = ExitStatus::done;
   for (std::size_t k = 0; k < predictions.size(); ++k) {
     const numerics::SolveReport& report = predictions[k].curve.curve.report;
     if (!report.usable()) {
-      console.complain(fmt::format("series {}: {} ({} of {} points kept)", experiment.series[k].name, report.message,
-                                   predictions[k].force.size(),
+      console.complain(fmt::format("series {}: {} ({} of {} points kept)", experiment.series[k].name,
+                                   report.message, predictions[k].force.size(),
                                    identification::measured_displacement(experiment.series[k]).size()));
       status = ExitStatus::solver_stopped;
     }
@@ -45,11 +45,11 @@ ExitStatus run_push(const std::filesystem::path& file, const CommonOptions& opti
   } else {
     for (const nlohmann::json& series : pushed.document["series"]) {
       const nlohmann::json& misfit = series["misfit"];
-      console.say(fmt::format(
-          "{}: {} points, largest force {:.4g} N{}", series["series"].get<std::string>(),
-          series["points"].get<std::size_t>(), series["largest_force_N"].get<double>(),
-          misfit.is_null() ? ""
-                           : fmt::format(", rms distance from the readings {:.3g} N", misfit["rmse_N"].get<double>())));
+      console.say(fmt::format("{}: {} points, largest force {:.4g} N{}", series["series"].get<std::string>(),
+                              series["points"].get<std::size_t>(), series["largest_force_N"].get<double>(),
+                              misfit.is_null() ? ""
+                                               : fmt::format(", rms distance from the readings {:.3g} N",
+                                                             misfit["rmse_N"].get<double>())));
     }
     console.say(fmt::format("wrote {0}/curves.csv, {0}/report.html", options.out.string()));
   }

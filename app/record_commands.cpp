@@ -54,8 +54,8 @@ std::string kept_words(const RecordTrace& trace) {
                      trace.selected.empty() ? "" : fmt::format(" and {} effects", trace.selected.size()));
 }
 
-RecordTrace run(const RecordSet& set, bool effects, const CommonOptions& options, const char* schema, Write write,
-                Console& console) {
+RecordTrace run(const RecordSet& set, bool effects, const CommonOptions& options, const char* schema,
+                Write write, Console& console) {
   identification::RecordTraceOptions tracing;
   tracing.effects = effects;
   tracing.progress = [&console](const std::string& stage) {
@@ -88,7 +88,8 @@ RecordTrace run(const RecordSet& set, bool effects, const CommonOptions& options
   } else {
     console.complain(trace.report.message);
     if (options.json)
-      print(nlohmann::json{{"schema", schema}, {"interrupted", trace.interrupted}, {"stopped", trace.report.message}}
+      print(nlohmann::json{
+                {"schema", schema}, {"interrupted", trace.interrupted}, {"stopped", trace.report.message}}
                 .dump(1) +
             "\n");
   }
@@ -97,8 +98,8 @@ RecordTrace run(const RecordSet& set, bool effects, const CommonOptions& options
 
 void tell(const RecordStage& stage, const char* name, Console& console) {
   for (const identification::ChannelError& e : stage.errors)
-    console.say(fmt::format("{}: {} within {:.4g} {} ({:.2f} % of the readings)", name, e.sensor, e.rmse, e.unit,
-                            100.0 * e.relative));
+    console.say(fmt::format("{}: {} within {:.4g} {} ({:.2f} % of the readings)", name, e.sensor, e.rmse,
+                            e.unit, 100.0 * e.relative));
   for (const identification::ChannelError& e : stage.heldout)
     console.say(fmt::format("{}, held out: {} within {:.4g} {}", name, e.sensor, e.rmse, e.unit));
 }
@@ -112,9 +113,10 @@ void tell_numbers(const RecordStage& stage, Console& console) {
 
 void tell_profiles(const RecordTrace& trace, Console& console) {
   for (const identification::Profile& p : trace.profiles)
-    console.say(fmt::format(
-        "  {} by its profile: {} to {}{}{}", p.key, p.lower.limit ? fmt::format("{:.5g}", *p.lower.limit) : "no limit",
-        p.upper.limit ? fmt::format("{:.5g}", *p.upper.limit) : "no limit", p.unit.empty() ? "" : " ", p.unit));
+    console.say(fmt::format("  {} by its profile: {} to {}{}{}", p.key,
+                            p.lower.limit ? fmt::format("{:.5g}", *p.lower.limit) : "no limit",
+                            p.upper.limit ? fmt::format("{:.5g}", *p.upper.limit) : "no limit",
+                            p.unit.empty() ? "" : " ", p.unit));
 }
 
 ExitStatus status_of(const RecordTrace& trace) {
@@ -133,13 +135,14 @@ ExitStatus fit_records(const std::filesystem::path& file, const CommonOptions& o
     tell(trace.base, "fitted", console);
     tell_numbers(trace.base, console);
     tell_profiles(trace, console);
-    console.say(fmt::format("{0} simulations of the fit; wrote {1}/fit.json, {1}/curves.csv", trace.fit_simulations,
-                            options.out.string()));
+    console.say(fmt::format("{0} simulations of the fit; wrote {1}/fit.json, {1}/curves.csv",
+                            trace.fit_simulations, options.out.string()));
   }
   return status_of(trace);
 }
 
-ExitStatus trace_record_file(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
+ExitStatus trace_record_file(const std::filesystem::path& file, const CommonOptions& options,
+                             Console& console) {
   const RecordSet set = identification::read_records(file, overrides_of(options));
   static_cast<void>(identification::RecordModel(set));
   const ResultFolder folder(options, {"curves.csv", "trace.json", "report.html"});

@@ -49,10 +49,13 @@ std::vector<std::string> assumptions(const Experiment& experiment) {
                                 [](const Series& s) { return s.law.has_value(); });
   if (laws) {
     result.push_back(
-        "The readings were not published. Their quadratic fits are compared with the same fits to the computed curves "
+        "The readings were not published. Their quadratic fits are compared with the same fits to the "
+        "computed curves "
         "at "
-        "evenly spread displacements, with one standard deviation of a reading for all positions unless the file says "
-        "otherwise; R2 is taken to be rounded to its printed decimals, at least four (the key law.R2_digits).");
+        "evenly spread displacements, with one standard deviation of a reading for all positions unless the "
+        "file says "
+        "otherwise; R2 is taken to be rounded to its printed decimals, at least four (the key "
+        "law.R2_digits).");
     std::string ranges;
     for (const Series& s : experiment.series) {
       if (s.law) ranges += fmt::format("{}{}: {:g} mm", ranges.empty() ? "" : ", ", s.name, 1e3 * s.law->to);
@@ -62,11 +65,14 @@ std::vector<std::string> assumptions(const Experiment& experiment) {
   }
   const coupling::PushProblem& test = experiment.series.front().test;
   result.push_back(fmt::format(
-      "The pusher is a cylinder of {:g} mm radius that pushes {} without friction{}.", 1e3 * test.pusher.radius,
+      "The pusher is a cylinder of {:g} mm radius that pushes {} without friction{}.",
+      1e3 * test.pusher.radius,
       test.pusher.direction == coupling::PushDirection::outward ? "with the bulge" : "against the bulge",
-      test.pusher.friction > 0.0 ? fmt::format(" other than Coulomb's, mu = {:g}", test.pusher.friction) : ""));
+      test.pusher.friction > 0.0 ? fmt::format(" other than Coulomb's, mu = {:g}", test.pusher.friction)
+                                 : ""));
   result.push_back(
-      "The wire is computed in its plane; the displacement is counted from the first touch of pusher and wire.");
+      "The wire is computed in its plane; the displacement is counted from the first touch of pusher and "
+      "wire.");
   return result;
 }
 
@@ -87,8 +93,9 @@ identification::PredictionOptions with_shapes(const Series& series, double offse
 }
 
 /// The curves of a model with these settings, with shapes.
-std::vector<Prediction> curves_of(const Experiment& experiment, const std::vector<identification::Setting>& settings,
-                                  Console& console, const std::string& label) {
+std::vector<Prediction> curves_of(const Experiment& experiment,
+                                  const std::vector<identification::Setting>& settings, Console& console,
+                                  const std::string& label) {
   const identification::Model::Applied applied =
       identification::Model(experiment.series, experiment.solver, false).apply(settings);
   std::vector<Prediction> result;
@@ -130,8 +137,8 @@ Trace fit_of(const Experiment& experiment, const std::vector<std::string>& free,
 
 /// The published fits against one wire whose numbers are fitted to them, from these settings; no replicates: no bootstrap.
 identification::SummaryStatistics refitted(const Experiment& experiment,
-                                           const std::vector<identification::Setting>& start, std::size_t free,
-                                           int replicates) {
+                                           const std::vector<identification::Setting>& start,
+                                           std::size_t free, int replicates) {
   std::vector<std::size_t> series;
   for (std::size_t k = 0; k < experiment.series.size(); ++k) {
     if (std::ranges::find(experiment.heldout, experiment.series[k].name) == experiment.heldout.end())
@@ -144,7 +151,8 @@ identification::SummaryStatistics refitted(const Experiment& experiment,
 }
 
 /// The statistics as they would be with R2 rounded to four decimals and to three.
-std::map<int, identification::SummaryStatistics> by_digits(const Experiment& experiment, const Trace& fitted) {
+std::map<int, identification::SummaryStatistics> by_digits(const Experiment& experiment,
+                                                           const Trace& fitted) {
   std::map<int, identification::SummaryStatistics> result;
   for (const int digits : {3, 4}) {
     Experiment rounded = experiment;
@@ -152,8 +160,8 @@ std::map<int, identification::SummaryStatistics> by_digits(const Experiment& exp
       if (s.law) s.law->r_squared_digits = digits;
     }
     rounded.solver.elements = std::min(rounded.solver.elements, 128);
-    result[digits] =
-        refitted(rounded, fitted.final_settings, fitted.final.numbers.size(), identification::published_replicates);
+    result[digits] = refitted(rounded, fitted.final_settings, fitted.final.numbers.size(),
+                              identification::published_replicates);
   }
   return result;
 }
@@ -162,10 +170,12 @@ std::map<int, identification::SummaryStatistics> by_digits(const Experiment& exp
 /// where there are no published fits, or the run was interrupted.
 std::shared_ptr<const nlohmann::json> published_map_of(const Experiment& experiment, const Progress& progress,
                                                        Console& console) {
-  if (!std::ranges::all_of(experiment.series, [](const Series& s) { return s.law.has_value(); })) return nullptr;
+  if (!std::ranges::all_of(experiment.series, [](const Series& s) { return s.law.has_value(); }))
+    return nullptr;
   const std::filesystem::path stored = data_directory() / "published" / "published_static_map.json";
   if (std::filesystem::exists(stored)) {
-    auto map = std::make_shared<nlohmann::json>(nlohmann::json::parse(base::read_text(stored), nullptr, false));
+    auto map =
+        std::make_shared<nlohmann::json>(nlohmann::json::parse(base::read_text(stored), nullptr, false));
     if (map->is_object() && map->value("inputs", "") == published_inputs(experiment)) return map;
   }
   console.end_progress();
@@ -183,12 +193,14 @@ std::shared_ptr<const nlohmann::json> published_map_of(const Experiment& experim
 std::optional<RefittedLeader> leading_refitted(Experiment experiment, const nlohmann::json& map) {
   const std::string leading = published_verdict(map).leading;
   const auto& entries = map.at("map");
-  const auto entry = std::ranges::find_if(entries, [&](const nlohmann::json& e) { return e["model"] == leading; });
+  const auto entry =
+      std::ranges::find_if(entries, [&](const nlohmann::json& e) { return e["model"] == leading; });
   const std::vector<identification::Hypothesis> all = identification::published_hypotheses();
   const auto hypothesis =
       std::ranges::find_if(all, [&](const identification::Hypothesis& h) { return h.name == leading; });
   if (entry == entries.end() || hypothesis == all.end()) return std::nullopt;
-  experiment = with_ranges(std::move(experiment), (*entry)["to_mm"].get<std::vector<double>>(), (*entry)["readings"]);
+  experiment =
+      with_ranges(std::move(experiment), (*entry)["to_mm"].get<std::vector<double>>(), (*entry)["readings"]);
   experiment = coarse(std::move(experiment));
   if (hypothesis->change != nullptr)
     for (Series& s : experiment.series) hypothesis->change(s.test);
@@ -199,7 +211,8 @@ std::optional<RefittedLeader> leading_refitted(Experiment experiment, const nloh
     start.push_back({&p, p.coordinate(model.declared(p), value.get<double>() * p.unit_size)});
   }
   for (const Series& s : experiment.series)
-    start.push_back({&identification::parameters().at("series[" + s.name + "].reading.displacement_offset_mm"), 0.0});
+    start.push_back(
+        {&identification::parameters().at("series[" + s.name + "].reading.displacement_offset_mm"), 0.0});
   const auto fit = refitted(experiment, start, start.size(), identification::published_replicates);
   RefittedLeader result{leading, fit.p, {}};
   for (const identification::Setting& s : fit.settings) result.values[s.parameter->key] = model.shown(s);
@@ -211,17 +224,20 @@ ReproducedModel declared_model(const Experiment& experiment, Console& console) {
   ReproducedModel model{
       .name = "declared",
       .label = "declared model",
-      .description = "The wire, mounts and pusher exactly as the experiment file declares them; nothing fitted"};
+      .description =
+          "The wire, mounts and pusher exactly as the experiment file declares them; nothing fitted"};
   for (const char* key : {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N", "wire.length_mm"}) {
     const identification::Parameter& p = identification::parameters().at(key);
-    model.numbers[key] = {p.shown(p.number.get(experiment.series.front().test, {}), 0.0), std::nullopt, p.unit};
+    model.numbers[key] = {p.shown(p.number.get(experiment.series.front().test, {}), 0.0), std::nullopt,
+                          p.unit};
   }
   model.predictions = curves_of(experiment, {}, console, model.label);
   return model;
 }
 
 /// The final model of a trace.
-ReproducedModel model_of(const Experiment& experiment, const Trace& trace, const ModelWords& words, Console& console) {
+ReproducedModel model_of(const Experiment& experiment, const Trace& trace, const ModelWords& words,
+                         Console& console) {
   ReproducedModel model{.name = words.name, .label = words.label, .description = words.description};
   for (const identification::FittedNumber& n : trace.final.numbers) {
     model.numbers[n.key] = {n.value, n.standard_error, n.unit};
@@ -242,7 +258,8 @@ std::string error_table(const Reproduction& result) {
         fmt::format("{:<22}", fmt::format("{} ({:g} mm)", series.name, 1e3 * series.test.contact_position));
     for (const ReproducedModel& model : result.models) {
       const std::vector<double>& force = model.predictions[k].force;
-      row += fmt::format("{:>14.3f}", identification::misfit(identification::measured_force(series), force).rmse);
+      row += fmt::format("{:>14.3f}",
+                         identification::misfit(identification::measured_force(series), force).rmse);
     }
     if (series.law) row += fmt::format("{:>20.3f}", series.law->scatter());
     rows.push_back(std::move(row));
@@ -254,9 +271,9 @@ std::string error_table(const Reproduction& result) {
 std::string fits_in_words(const Reproduction& result) {
   std::string words = error_table(result);
   if (const auto& s = result.summary) {
-    words +=
-        fmt::format("\npublished numbers: deviance {:.3g}, {:g} degrees of freedom with {} numbers fitted, p = {:.2g}",
-                    s->chi2, s->dof, s->numbers, s->p);
+    words += fmt::format(
+        "\npublished numbers: deviance {:.3g}, {:g} degrees of freedom with {} numbers fitted, p = {:.2g}",
+        s->chi2, s->dof, s->numbers, s->p);
   }
   return words;
 }
@@ -290,7 +307,8 @@ void write_traced_wire(const CommonOptions& options, const Reproduction& result)
 
 void write_files(const CommonOptions& options, Reproduction& result) {
   for (const ReproducedModel& model : result.models) {
-    const std::vector<std::string> more = push_warnings(result.experiment.series, model.predictions, model.label);
+    const std::vector<std::string> more =
+        push_warnings(result.experiment.series, model.predictions, model.label);
     result.warnings.insert(result.warnings.end(), more.begin(), more.end());
   }
   write_all_curves(options.out / "curves.csv", result);
@@ -302,8 +320,8 @@ void write_files(const CommonOptions& options, Reproduction& result) {
 std::string partial_words(const Reproduction& result) {
   std::string models;
   for (const ReproducedModel& model : result.models) models += (models.empty() ? "" : ", ") + model.label;
-  return fmt::format("interrupted: what was finished is kept and marked as a part (models: {}; tracing: {})", models,
-                     result.trace ? "finished" : "none");
+  return fmt::format("interrupted: what was finished is kept and marked as a part (models: {}; tracing: {})",
+                     models, result.trace ? "finished" : "none");
 }
 
 /// What of a reproduction is whole, for an interruption that comes while the next part is under way.
@@ -339,13 +357,13 @@ class Finished {
 
 ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   Reproduction result;
-  result.experiment =
-      open_experiment(file.empty() ? data_directory() / "experiments" / "published_static.toml" : file, options);
+  result.experiment = open_experiment(
+      file.empty() ? data_directory() / "experiments" / "published_static.toml" : file, options);
   const Experiment& experiment = result.experiment;
   for (const Series& series : experiment.series) {
     if (identification::measured_force(series).empty()) {
-      throw base::InputError(
-          {experiment.file.string(), 0, "series[" + series.name + "]", "", "must have readings or a law to reproduce"});
+      throw base::InputError({experiment.file.string(), 0, "series[" + series.name + "]", "",
+                              "must have readings or a law to reproduce"});
     }
   }
   const ResultFolder folder(options, {"curves.csv", "reproduce.json", "report.html", traced_wire_file});
@@ -383,7 +401,8 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
     tracing.progress = progress;
     Trace trace = identification::trace(experiment, tracing);
     if (trace.report.usable()) {
-      const ModelWords words{"traced", "traced model", "The fitted model with the effect that the tracing adds"};
+      const ModelWords words{"traced", "traced model",
+                             "The fitted model with the effect that the tracing adds"};
       if (!trace.selected.empty()) result.models.push_back(model_of(experiment, trace, words, console));
       result.trace = std::move(trace);
       finished.reached(result);
@@ -405,7 +424,8 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
     for (std::size_t k = 0; k < experiment.series.size(); ++k) {
       const numerics::SolveReport& report = model.predictions[k].curve.curve.report;
       if (report.usable()) continue;
-      console.complain(fmt::format("{}, series {}: {}", model.label, experiment.series[k].name, report.message));
+      console.complain(
+          fmt::format("{}, series {}: {}", model.label, experiment.series[k].name, report.message));
       status = ExitStatus::solver_stopped;
     }
   }

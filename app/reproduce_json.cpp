@@ -40,12 +40,13 @@ json curve_json(const Series& series, const Prediction& prediction) {
   for (const coupling::PushShape& shape : prediction.curve.curve.shapes) {
     shapes.push_back(shape_json(shape, prediction.reading.displacement_offset, series.test.pusher.radius));
   }
-  json result{{"force_N", prediction.force},
-              {"stiffness_N_mm", tangent_stiffness(identification::measured_displacement(series), prediction.force)},
-              {"rmse_N", misfit.rmse},
-              {"nrmse", misfit.nrmse},
-              {"max_N", largest_force(prediction)},
-              {"shapes", shapes}};
+  json result{
+      {"force_N", prediction.force},
+      {"stiffness_N_mm", tangent_stiffness(identification::measured_displacement(series), prediction.force)},
+      {"rmse_N", misfit.rmse},
+      {"nrmse", misfit.nrmse},
+      {"max_N", largest_force(prediction)},
+      {"shapes", shapes}};
   const numerics::SolveReport& report = prediction.curve.curve.report;
   if (!report.usable()) result["stopped"] = report.message;
   return result;
@@ -62,8 +63,10 @@ json series_json(const Reproduction& reproduction, std::size_t k) {
               {"published_stiffness_N_mm", published_stiffness(series)}};
   if (const auto sigma = published_scatter(series)) result["published"]["sigma_N"] = *sigma;
   if (series.law) {
-    result["published"].update(
-        {{"A_N_m2", series.law->a}, {"B_N_m", series.law->b}, {"C_N", series.law->c}, {"R2", series.law->r_squared}});
+    result["published"].update({{"A_N_m2", series.law->a},
+                                {"B_N_m", series.law->b},
+                                {"C_N", series.law->c},
+                                {"R2", series.law->r_squared}});
   }
   for (const ReproducedModel& model : reproduction.models) {
     if (model.at(k) != nullptr) result["models"][model.name] = curve_json(series, *model.at(k));
@@ -74,8 +77,9 @@ json series_json(const Reproduction& reproduction, std::size_t k) {
 json model_json(const identification::Experiment& experiment, const ReproducedModel& model) {
   json parameters = json::object();
   for (const auto& [key, n] : model.numbers) {
-    parameters[key] = {
-        {"value", n.value}, {"stderr", n.standard_error ? json(*n.standard_error) : json()}, {"unit", n.unit}};
+    parameters[key] = {{"value", n.value},
+                       {"stderr", n.standard_error ? json(*n.standard_error) : json()},
+                       {"unit", n.unit}};
   }
   const auto misfit = model.misfit(experiment);
   return {{"name", model.name},
@@ -88,11 +92,14 @@ json model_json(const identification::Experiment& experiment, const ReproducedMo
 }
 
 json comparison_json(const identification::FitComparison& c) {
-  json result{
-      {"chi2", c.chi2}, {"R2_published", c.published_r2}, {"R2_computed", c.computed_r2}, {"scatter_N", c.scatter}};
+  json result{{"chi2", c.chi2},
+              {"R2_published", c.published_r2},
+              {"R2_computed", c.computed_r2},
+              {"scatter_N", c.scatter}};
   constexpr const char* names[] = {"A_N_m2", "B_N_m", "C_N"};
   for (std::size_t k = 0; k < 3; ++k) {
-    result[names[k]] = {{"published", c.published[k]}, {"computed", c.computed[k]}, {"stderr", c.deviation[k]}};
+    result[names[k]] = {
+        {"published", c.published[k]}, {"computed", c.computed[k]}, {"stderr", c.deviation[k]}};
   }
   return result;
 }
@@ -161,7 +168,8 @@ json reproduce_json(const Reproduction& reproduction) {
     result["trace"] = trace_json(experiment, *reproduction.trace);
     result["trace"].erase("series");
   }
-  for (const ReproducedModel& model : reproduction.models) result["models"].push_back(model_json(experiment, model));
+  for (const ReproducedModel& model : reproduction.models)
+    result["models"].push_back(model_json(experiment, model));
   for (std::size_t k = 0; k < experiment.series.size(); ++k) {
     result["series"].push_back(series_json(reproduction, k));
   }

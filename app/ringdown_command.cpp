@@ -51,7 +51,8 @@ json series_json(const identification::RingDown& data, const RingDownFit& fit) {
           {"friction_bic", fit.friction_bic},
           {"rmse_mm", per_mm * fit.rmse},
           {"nrmse", fit.nrmse},
-          {"residual", {{"noise_only", fit.noise_only()}, {"runs_p", fit.runs_p}, {"ljung_box_p", fit.ljung_box_p}}}};
+          {"residual",
+           {{"noise_only", fit.noise_only()}, {"runs_p", fit.runs_p}, {"ljung_box_p", fit.ljung_box_p}}}};
 }
 
 /// What must not be relied on, of the records and of what they give together.
@@ -62,7 +63,8 @@ std::vector<std::string> warnings_of(const RingDownFile& file, const std::vector
     const std::string& name = file.series[s].data.name;
     if (!fits[s].report.usable())
       warnings.push_back(fmt::format("{}: the fit did not converge {}", name, fits[s].report.message));
-    if (!fits[s].noise_only()) warnings.push_back(name + ": the residual has a pattern, so the errors are too small");
+    if (!fits[s].noise_only())
+      warnings.push_back(name + ": the residual has a pattern, so the errors are too small");
   }
   warnings.insert(warnings.end(), split.warnings.begin(), split.warnings.end());
   return warnings;
@@ -132,13 +134,13 @@ ExitStatus run_ringdown(const std::filesystem::path& path, const CommonOptions& 
   if (options.json) return status;
   for (std::size_t s = 0; s < fits.size(); ++s) {
     for (const RingDownMode& m : fits[s].modes) {
-      console.say(fmt::format("{}: {} Hz, damping ratio {}{}", file.series[s].data.name, with_error(m.frequency),
-                              with_error(m.damping_ratio),
+      console.say(fmt::format("{}: {} Hz, damping ratio {}{}", file.series[s].data.name,
+                              with_error(m.frequency), with_error(m.damping_ratio),
                               m.significant() ? "" : " (does not stand out of the noise)"));
     }
     if (fits[s].friction)
-      console.say(fmt::format("{}: friction takes {} mm of amplitude a second besides", file.series[s].data.name,
-                              with_error(*fits[s].friction, per_mm)));
+      console.say(fmt::format("{}: friction takes {} mm of amplitude a second besides",
+                              file.series[s].data.name, with_error(*fits[s].friction, per_mm)));
   }
   if (split.separated)
     console.say(fmt::format("bending_time_s = {}, mass_rate_1_s = {}", with_error(split.bending_time),

@@ -8,8 +8,7 @@
 #include "app/result_folder.hpp"
 #include "base/files.hpp"
 #include "results/motion_history.hpp"
-#include "results/motion_summary.hpp"
-#include "results/warnings.hpp"
+#include "results/simulation.hpp"
 #include "scenario/scenario.hpp"
 
 #include <fmt/format.h>
@@ -30,28 +29,29 @@ void tell(const FinishedMotion& run, Console& console) {
     console.say(fmt::format("{}: {} touches, peak {:.4g} N, up to {} points at a time", contacts[k],
                             touches_of(run.result, k).count, run.result.peak_force[k], most_points(run, k)));
   }
-  console.say(
-      fmt::format("{} steps, {:.3g} times real time", run.result.statistics.steps, real_time_factor(run.result)));
+  console.say(fmt::format("{} steps, {:.3g} times real time", run.result.statistics.steps,
+                          real_time_factor(run.result)));
 }
 
 ExitStatus simulate(const scenario::Scenario& asked, const CommonOptions& options, Console& console) {
   const scenario::WireMotions& motions = asked.motions;
   const std::vector<MotionRecord> records = run_motions(
-      motions.runs, {options.out / "checkpoint.bin", motions.input, motions.output.checkpoint_wall_time}, console);
-  const bool partial = left_undone(motions.runs, records);
+      motions.runs, {options.out / "checkpoint.bin", motions.input, motions.output.checkpoint_wall_time},
+      console);
+  const json summary = simulation_document(asked, records, {{}, interrupted});
+  begin_writing();
+  const bool partial = summary["interrupted"].get<bool>();
+  const auto warnings = summary["warnings"].get<std::vector<std::string>>();
   const std::vector<FinishedMotion> finished = finished_motions(motions, records);
   const FinishedMotion& run = finished.front();
-  json summary = motion_summary(asked, run, interrupted);
-  begin_writing();
-  const std::vector<std::string> warnings = motion_warnings(finished);
   for (const std::string& warning : warnings) console.warn(warning);
   write_history(options.out / "history.csv", run.asked.motion, run.samples);
   if (!motions.sensors.empty()) write_telemetry(options.out / "telemetry.csv", motions, run.samples);
-  summary.update({{"interrupted", partial}, {"warnings", warnings}});
   base::write_text(options.out / "report.html", motion_page(asked, run, version(), warnings, partial));
   write_result(options, "summary.json", summary);
   if (motions.output.paraview)
-    write_paraview(options.out, "motion", MotionPictures(run.asked.motion, run.samples, motions.drawn).paraview());
+    write_paraview(options.out, "motion",
+                   MotionPictures(run.asked.motion, run.samples, motions.drawn).paraview());
   if (partial) console.complain("interrupted: the results are a part of what was asked for");
   if (!options.json) {
     tell(run, console);
@@ -64,7 +64,8 @@ ExitStatus simulate(const scenario::Scenario& asked, const CommonOptions& option
 
 ExitStatus run_simulate(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const scenario::Scenario asked = scenario::read_scenario(file, overrides_of(options));
-  const ResultFolder folder(options, {"history.csv", "telemetry.csv", "summary.json", "report.html", "checkpoint.bin"});
+  const ResultFolder folder(
+      options, {"history.csv", "telemetry.csv", "summary.json", "report.html", "checkpoint.bin"});
   return simulate(asked, options, console);
 }
 

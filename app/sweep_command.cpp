@@ -8,6 +8,7 @@
 #include "base/errors.hpp"
 #include "base/files.hpp"
 #include "results/sweep_run.hpp"
+#include "study/rank_journal.hpp"
 #include "study/rank_work.hpp"
 
 #include <fmt/format.h>
@@ -36,14 +37,15 @@ ExitStatus run_one_case(const SweepStudy& study, const CommonOptions& options, C
   std::vector<double> values;
   if (study.count() > 0) {
     if (index >= study.count()) {
-      throw base::InputError(
-          {"", 0, "--case", std::to_string(options.only_case), fmt::format("must be from 1 to {}", study.count())});
+      throw base::InputError({"", 0, "--case", std::to_string(options.only_case),
+                              fmt::format("must be from 1 to {}", study.count())});
     }
     values = design.values(index);
   } else {
     const std::filesystem::path file = options.out / "cases.journal";
     std::optional<std::string> line;
-    if (std::filesystem::exists(file)) line = Journal(file, study.identity(), 0, Journal::Use::look).result(index);
+    if (std::filesystem::exists(file))
+      line = Journal(file, study.identity(), 0, Journal::Use::look).result(index);
     const auto record = line ? study::record_of(*line) : std::nullopt;
     if (!record) {
       throw base::InputError(
@@ -82,7 +84,8 @@ SweepAnswers write_answers(const SweepStudy& study, const Journal& journal, cons
 
 void tell(const SweepAnswers& answers, bool histories, const CommonOptions& options, Console& console) {
   if (answers.inferred() > 0)
-    console.say(fmt::format("{} of {} cases were run, the others are inferred", answers.finished, answers.cases));
+    console.say(
+        fmt::format("{} of {} cases were run, the others are inferred", answers.finished, answers.cases));
   for (const FieldAnswer& f : answers.fields) {
     if (f.count == 0) continue;
     if (f.yes_or_no)
@@ -92,10 +95,11 @@ void tell(const SweepAnswers& answers, bool histories, const CommonOptions& opti
   }
   if (answers.subset) {
     const SubsetAnswer& s = *answers.subset;
-    console.say(s.reached
-                    ? fmt::format("probability {:.3g}, 95 % interval {:.3g} to {:.3g}, coefficient of variation {:.2g}",
-                                  s.probability, s.interval.low, s.interval.high, s.variation)
-                    : fmt::format("the event was not reached: probability below {:.3g}", s.interval.high));
+    console.say(
+        s.reached ? fmt::format(
+                        "probability {:.3g}, 95 % interval {:.3g} to {:.3g}, coefficient of variation {:.2g}",
+                        s.probability, s.interval.low, s.interval.high, s.variation)
+                  : fmt::format("the event was not reached: probability below {:.3g}", s.interval.high));
   }
   console.say(fmt::format("wrote {0}/cases.csv, summary.json, report.html{1}", options.out.string(),
                           histories ? ", histories.h5" : ""));
@@ -105,58 +109,80 @@ void tell(const SweepAnswers& answers, bool histories, const CommonOptions& opti
 ExitStatus lead(const SweepStudy& study, int threads, const CommonOptions& options, study::RankLeader* leader,
                 int ranks, Console& console) {
   const std::filesystem::path file = options.out / "cases.journal";
-  const bool fresh = !std::filesystem::exists(file);
-  std::optional<Journal> journal;
-  journal.emplace(file, study.identity(), study.count());
-  if (journal->damaged() > 0)
-    console.complain(fmt::format("{}: {} damaged lines, their cases are run again", file.string(), journal->damaged()));
-  if (journal->finished() > 0)
-    console.say(fmt::format("goes on from {}: {} cases are there", file.string(), journal->finished()));
+  Journal journal(file, study.identity(), study.count());
+  if (journal.damaged() > 0)
+    console.complain(
+        fmt::format("{}: {} damaged lines, their cases are run again", file.string(), journal.damaged()));
+  if (journal.finished() > 0)
+    console.say(fmt::format("goes on from {}: {} cases are there", file.string(), journal.finished()));
   std::optional<SweepHistories> histories;
   if (study.sweep().histories) histories.emplace(study, options.out);
   if (histories && histories->damaged())
     console.complain(fmt::format("{}: is damaged, its cases are run again", histories->file().string()));
   const KeepWhenInterrupted keeping(
       [&] {
-        journal->flush();
-        return fmt::format("{} finished cases are kept in {}; the same command goes on", journal->finished(),
+        journal.flush();
+        return fmt::format("{} finished cases are kept in {}; the same command goes on", journal.finished(),
                            file.string());
       },
       std::nullopt);
 
-  const SweepWorkers workers{threads, threads * ranks, leader,
-                             [&](std::uint64_t index, const std::vector<double>& values) -> std::shared_ptr<void> {
-                               return std::make_shared<CrashNote>(*journal, index, values);
-                             },
-                             histories ? &*histories : nullptr};
-  SweepEnd end;
-  try {
-    end = run_sweep_cases(study, *journal, workers,
-                          {[&console](const std::string& stage) { console.progress(stage); }, interrupted});
-  } catch (const base::InputError&) {
-    const bool empty = journal->finished() == 0;
-    journal.reset();
-    std::error_code ignored;
-    if (fresh && empty) std::filesystem::remove(file, ignored);
-    throw;
-  }
+  const SweepWorkers workers{
+      threads, threads * ranks, leader,
+      [&](std::uint64_t index, const std::vector<double>& values) -> std::shared_ptr<void> {
+        return std::make_shared<CrashNote>(journal, index, values);
+      },
+      histories ? &*histories : nullptr};
+  const SweepEnd end =
+      run_sweep_cases(study, journal, workers,
+                      {[&console](const std::string& stage) { console.progress(stage); }, interrupted});
   console.end_progress();
   begin_writing();
-  journal->flush();
+  journal.flush();
 
   if (end.partial)
-    console.complain(
-        fmt::format("interrupted: {} cases are finished and kept; the same command goes on", journal->finished()));
-  const SweepAnswers answers = write_answers(study, *journal, end, options);
+    console.complain(fmt::format("interrupted: {} cases are finished and kept; the same command goes on",
+                                 journal.finished()));
+  const SweepAnswers answers = write_answers(study, journal, end, options);
   const auto done = answers.statuses.find("done");
   const std::uint64_t well = done == answers.statuses.end() ? 0 : done->second;
   if (well < answers.finished) {
-    console.complain(fmt::format("{} of {} cases have no result; summary.json has the reasons", answers.finished - well,
-                                 answers.finished));
+    console.complain(fmt::format("{} of {} cases have no result; summary.json has the reasons",
+                                 answers.finished - well, answers.finished));
   }
-  if (histories && !end.partial) histories->join(*journal, end.cases);
+  if (histories && !end.partial) histories->join(journal, end.cases);
   if (!options.json) tell(answers, histories && !end.partial, options, console);
   return end.partial || well == 0 ? ExitStatus::solver_stopped : ExitStatus::done;
+}
+
+/// The work of every rank but the first.
+ExitStatus help(const SweepStudy& study, study::Ranks& ranks, int threads, const CommonOptions& options) {
+  std::optional<SweepHistories> histories;
+  if (study.sweep().histories) histories.emplace(study, options.out);
+  std::optional<Journal> faults;
+  std::once_flag opened;
+  const auto open = [&] {
+    // Of an earlier run: the first rank has taken its cases before it sent any work.
+    const std::filesystem::path file = study::rank_journal(options.out / "cases.journal", ranks.rank());
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+    try {
+      faults.emplace(file, study.identity(), study.count());
+    } catch (const std::exception&) {
+      // A machine without the folder of the results: a fault is not noted there, and its case is run again.
+    }
+  };
+  study::follow(
+      ranks, study.identity(), threads,
+      [&](std::uint64_t index, const std::vector<double>& values) {
+        std::call_once(opened, open);
+        std::optional<CrashNote> note;
+        if (faults) note.emplace(*faults, index, values);
+        return case_line(study, histories ? &*histories : nullptr, index, values, interrupted);
+      },
+      interrupted);
+  begin_writing();  // the first rank writes; this one waits for it
+  return interrupted() ? ExitStatus::solver_stopped : ExitStatus::done;
 }
 
 int thread_count(const CommonOptions& options, bool ranks) {
@@ -169,6 +195,10 @@ int thread_count(const CommonOptions& options, bool ranks) {
 ExitStatus run_sweep(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
   const std::unique_ptr<study::Ranks> ranks = options.only_case == 0 ? launched_ranks() : nullptr;
   const int rank = ranks ? ranks->rank() : 0;
+  /// Only the first rank prints the message of an interruption.
+  std::optional<KeepWhenInterrupted> silent;
+  if (rank > 0) silent.emplace([] { return std::string(); }, "");
+  std::optional<ResultFolder> folder;  // until all have left: the others keep histories in it
   /// All ranks meet the same mistakes; the first tells them.
   struct Leave {
     study::Ranks* ranks;
@@ -180,8 +210,6 @@ ExitStatus run_sweep(const std::filesystem::path& file, const CommonOptions& opt
       if (ranks != nullptr && orderly) ranks->leave();
     }
   } leaving(ranks.get());
-  std::optional<KeepWhenInterrupted> silent;  // one of them speaks
-  if (rank > 0) silent.emplace(nullptr, "");
   std::optional<SweepStudy> study;
   try {
     study.emplace(file, overrides_of(options));
@@ -191,33 +219,27 @@ ExitStatus run_sweep(const std::filesystem::path& file, const CommonOptions& opt
   }
   if (options.only_case > 0) return run_one_case(*study, options, console);
   const int threads = thread_count(options, ranks != nullptr);
-  if (rank > 0) {
-    std::optional<SweepHistories> histories;
-    if (study->sweep().histories) histories.emplace(*study, options.out);
-    study::follow(
-        *ranks, study->identity(), threads,
-        [&](std::uint64_t index, const std::vector<double>& values) {
-          return case_line(*study, histories ? &*histories : nullptr, index, values, interrupted);
-        },
-        interrupted);
-    return interrupted() ? ExitStatus::solver_stopped : ExitStatus::done;
-  }
+  if (rank > 0) return help(*study, *ranks, threads, options);
+  const std::vector<std::string> results{"cases.csv", "cases.journal", "histories.h5", "summary.json",
+                                         "report.html"};
   if (!ranks || ranks->size() == 1) {
-    const ResultFolder folder(options, {"cases.csv", "cases.journal", "histories.h5", "summary.json", "report.html"});
+    folder.emplace(options, results);
     return lead(*study, threads, options, nullptr, 1, console);
   }
   std::optional<study::RankLeader> leader;
   leader.emplace(*ranks, study::RankLeader::Settings{.identity = study->identity(), .threads = threads});
-  const ResultFolder folder(options, {"cases.csv", "cases.journal", "histories.h5", "summary.json", "report.html"});
+  folder.emplace(options, results);
   const ExitStatus status = lead(*study, threads, options, &*leader, ranks->size(), console);
   if (const int lost = leader->lost(); lost > 0) {
-    console.complain(fmt::format("{} of {} ranks were lost on the way; others ran their cases", lost, ranks->size()));
+    console.complain(
+        fmt::format("{} of {} ranks were lost on the way; others ran their cases", lost, ranks->size()));
     leaving.orderly = false;  // who is gone would be waited for
   }
+  if (interrupted()) leaving.orderly = false;  // a launcher that ends all ranks does not serve their leave
   leader.reset();
   if (leaving.orderly) return status;
   std::fflush(nullptr);
-  release_result_folder();
+  base::release_result_folders();
   ::_exit(static_cast<int>(status));
 }
 

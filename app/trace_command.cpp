@@ -52,7 +52,8 @@ std::string kept_words(const Trace& trace) {
                      trace.selected.empty() ? "" : fmt::format(" and {} effects", trace.selected.size()));
 }
 
-using Write = void (*)(const identification::Experiment& experiment, const Trace& trace, const CommonOptions& options);
+using Write = void (*)(const identification::Experiment& experiment, const Trace& trace,
+                       const CommonOptions& options);
 
 /// The trace of an experiment, written by `write`, also where it is a part that an interruption leaves. What stops it is told to the
 /// console.
@@ -91,16 +92,19 @@ Trace trace_and_write(const identification::Experiment& experiment, identificati
   return trace;
 }
 
-void write_trace(const identification::Experiment& experiment, const Trace& trace, const CommonOptions& options) {
+void write_trace(const identification::Experiment& experiment, const Trace& trace,
+                 const CommonOptions& options) {
   const std::vector<std::string> warnings = trace_warnings(experiment, trace);
   write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, curve_columns(trace));
   base::write_text(options.out / "report.html", trace_report_html(experiment, trace, version(), warnings));
   write_result(options, "trace.json", trace_document(experiment, trace));
 }
 
-void write_fit(const identification::Experiment& experiment, const Trace& trace, const CommonOptions& options) {
+void write_fit(const identification::Experiment& experiment, const Trace& trace,
+               const CommonOptions& options) {
   write_curves(options.out / "curves.csv", trace.series, trace.final_predictions, curve_columns(trace));
-  base::write_text(options.out / "report.html", fit_report_html(experiment, trace, trace_warnings(experiment, trace)));
+  base::write_text(options.out / "report.html",
+                   fit_report_html(experiment, trace, trace_warnings(experiment, trace)));
   write_result(options, "fit.json", fit_json(experiment, trace));
 }
 
@@ -119,7 +123,8 @@ std::string number_line(const FittedNumber& n) {
 }  // namespace
 
 ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  if (identification::is_record_file(file, overrides_of(options))) return trace_record_file(file, options, console);
+  if (identification::is_record_file(file, overrides_of(options)))
+    return trace_record_file(file, options, console);
   const identification::Experiment experiment = open_experiment(file, options);
   const ResultFolder folder(options, {"curves.csv", "trace.json", "report.html"});
   const Trace trace = trace_and_write(experiment, {}, options, "snare-trace/1", write_trace, console);
@@ -127,8 +132,8 @@ ExitStatus run_trace(const std::filesystem::path& file, const CommonOptions& opt
   if (!options.json) {
     console.say(verdict(trace));
     console.say(fmt::format("rmse: declared {:.4g} N, base {:.4g} N, final {:.4g} N; noise {:.3g} N ({})",
-                            trace.declared.rmse, trace.base.rmse, trace.final.rmse, reading_noise(trace).value_or(0.0),
-                            trace.noise.source));
+                            trace.declared.rmse, trace.base.rmse, trace.final.rmse,
+                            reading_noise(trace).value_or(0.0), trace.noise.source));
     for (const FittedNumber& n : trace.final.numbers) console.say(number_line(n));
     if (trace.next) console.say("next: " + trace.next->what);
     console.say(fmt::format("wrote {0}/curves.csv, {0}/trace.json, {0}/report.html", options.out.string()));
@@ -140,7 +145,8 @@ ExitStatus run_fit(const std::filesystem::path& file, const CommonOptions& optio
   if (identification::is_record_file(file, overrides_of(options))) return fit_records(file, options, console);
   const identification::Experiment experiment = open_experiment(file, options);
   const ResultFolder folder(options, {"curves.csv", "fit.json", "report.html"});
-  const Trace trace = trace_and_write(experiment, fitting_options(), options, "snare-fit/1", write_fit, console);
+  const Trace trace =
+      trace_and_write(experiment, fitting_options(), options, "snare-fit/1", write_fit, console);
   if (!trace.report.usable()) return ExitStatus::solver_stopped;
   if (!options.json) {
     console.say(fmt::format("rmse: declared {:.4g} N, fitted {:.4g} N ({:.3g} times the noise, squared)",

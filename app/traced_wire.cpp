@@ -72,7 +72,8 @@ std::string asked(const Model::Applied& applied) {
     const identification::Series& series = applied.series[k];
     const std::vector<double>& displacement = identification::measured_displacement(series);
     if (!displacement.empty()) travel = std::max(travel, *std::ranges::max_element(displacement));
-    if (positions.size() == most_laws || std::ranges::find(positions, series.test.contact_position) != positions.end())
+    if (positions.size() == most_laws ||
+        std::ranges::find(positions, series.test.contact_position) != positions.end())
       continue;
     positions.push_back(series.test.contact_position);
     offsets.push_back(applied.reading[k].displacement_offset);
@@ -99,13 +100,14 @@ std::string traced_wire_toml(const Reproduction& result, const std::string& comm
   const std::string kind = kind_of(trace);
   const bool accepted = trace.explained || trace.kind == identification::VerdictKind::partly_explained;
 
-  std::string text = comment("The wire that the tracing of \"" + experiment.title + "\" ends with, written by `" +
-                             command + "`: wire, mounts and pusher.");
+  std::string text = comment("The wire that the tracing of \"" + experiment.title +
+                             "\" ends with, written by `" + command + "`: wire, mounts and pusher.");
   if (!experiment.file.empty()) text += comment("Declared in " + experiment.file.filename().string() + ".");
   text += comment("Verdict: " + kind + ". " + results::verdict(trace));
   if (trace.interrupted) text += comment("The tracing was interrupted: this is what it had found.");
   if (!accepted)
-    text += comment("No model was accepted: do not rely on these numbers. They are the best fit of the declared kind.");
+    text += comment(
+        "No model was accepted: do not rely on these numbers. They are the best fit of the declared kind.");
   std::string effects;
   for (const std::string& effect : trace.selected) effects += (effects.empty() ? "" : ", ") + effect;
   if (!effects.empty()) text += comment("Effects that the tracing added: " + effects + ".");
@@ -114,10 +116,10 @@ std::string traced_wire_toml(const Reproduction& result, const std::string& comm
   if (coupling::needs_space(test))
     text += comment("`snare distil` refuses this file: the push leaves the plane of the wire.");
 
-  text += fmt::format(
-      "\nschema = \"snare-wire/1\"\ntitle = {}\nsource = {}\n\n",
-      quoted("traced wire of \"" + experiment.title + "\": " + kind + (accepted ? "" : ", do not rely on it")),
-      quoted(command + ", on: " + experiment.source));
+  text += fmt::format("\nschema = \"snare-wire/1\"\ntitle = {}\nsource = {}\n\n",
+                      quoted("traced wire of \"" + experiment.title + "\": " + kind +
+                             (accepted ? "" : ", do not rely on it")),
+                      quoted(command + ", on: " + experiment.source));
   return text + scenario::push_tables_text(test) + asked(applied);
 }
 

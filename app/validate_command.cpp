@@ -69,17 +69,20 @@ std::string page(const Validation& v) {
   ReportPage page(
       "Validation of snare",
       "Every row: a computed value and its reference, whose kind says where it comes from. Rows of the kind "
-      "\"convergence of this code\" compare this code with itself, all others with a reference from elsewhere.");
+      "\"convergence of this code\" compare this code with itself, all others with a reference from "
+      "elsewhere.");
   page.doubts({}, !v.whole());
   page.heading("Kinds of references");
   page.paragraph(fmt::format("{} rows: {}.", rows.size(), validation::count_by_kind(rows)));
   page.list(
-      {"closed form: a formula, a quadrature, the root of an equation, a balance that has to close, a state or a "
+      {"closed form: a formula, a quadrature, the root of an equation, a balance that has to close, a state "
+       "or a "
        "symmetry that has to hold; it may be evaluated with forces and masses of the run that it checks",
        "published measurement: readings of others, or their published statements about them",
        "published computation: numbers that others have computed, fits of their measurements included",
        "independent code: another formulation or program that shares no equation with the code under test",
-       "convergence of this code: this code on a finer mesh, at a tighter tolerance, at another scale or by another "
+       "convergence of this code: this code on a finer mesh, at a tighter tolerance, at another scale or by "
+       "another "
        "of its routes, and the work that it needs"});
   std::string group;
   Table table;
@@ -116,9 +119,10 @@ std::string page(const Validation& v) {
 }
 
 void write_files(const CommonOptions& options, const Validation& v) {
-  nlohmann::json result{{"schema", "snare-validation/1"},  {"version", version()},
-                        {"interrupted", !v.whole()},       {"checks", {{"asked", v.checks}, {"done", v.done}}},
-                        {"rows", nlohmann::json::array()}, {"skipped", v.skipped}};
+  nlohmann::json result{
+      {"schema", "snare-validation/1"},  {"version", version()},
+      {"interrupted", !v.whole()},       {"checks", {{"asked", v.checks}, {"done", v.done}}},
+      {"rows", nlohmann::json::array()}, {"skipped", v.skipped}};
   for (const validation::Row& row : v.rows) result["rows"].push_back(row_json(row));
   base::write_text(options.out / "report.html", page(v));
   write_result(options, "validation.json", result);
@@ -127,8 +131,8 @@ void write_files(const CommonOptions& options, const Validation& v) {
 std::string count_words(const Validation& v, const CommonOptions& options) {
   const std::string kinds = v.rows.empty() ? "" : fmt::format(" ({})", validation::count_by_kind(v.rows));
   return fmt::format("{}{} rows{}, {} out of their limit; wrote {}/validation.json",
-                     v.whole() ? "" : fmt::format("a part, {} of {} checks: ", v.done, v.checks), v.rows.size(), kinds,
-                     v.out(), options.out.string());
+                     v.whole() ? "" : fmt::format("a part, {} of {} checks: ", v.done, v.checks),
+                     v.rows.size(), kinds, v.out(), options.out.string());
 }
 
 std::vector<validation::Check> all_checks() {
@@ -181,8 +185,8 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
     const std::scoped_lock lock(mutex);
     for (const validation::Row& row : rows) {
       if (!row.within())
-        console.complain(
-            fmt::format("out of its limit: {}, {}: {} instead of {}", row.group, row.name, row.value, row.reference));
+        console.complain(fmt::format("out of its limit: {}, {}: {} instead of {}", row.group, row.name,
+                                     row.value, row.reference));
     }
     found[k] = std::move(rows);
   });
@@ -194,8 +198,9 @@ ExitStatus run_validate(const CommonOptions& options, Console& console) {
   std::string group;
   for (const validation::Row& row : v.rows) {
     if (row.group != group) console.say((group = row.group) + ":");
-    console.say(fmt::format("  {:<58} {:>14.8g} {:>14.8g} {:<6} error {:.1e} of {:.0e} {}", row.name, row.reference,
-                            row.value, row.unit, row.error(), row.limit.value(), row.within() ? "" : "OUT"));
+    console.say(fmt::format("  {:<58} {:>14.8g} {:>14.8g} {:<6} error {:.1e} of {:.0e} {}", row.name,
+                            row.reference, row.value, row.unit, row.error(), row.limit.value(),
+                            row.within() ? "" : "OUT"));
   }
   if (!v.whole()) {
     console.complain("interrupted: " + count_words(v, options));

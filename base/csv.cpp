@@ -129,9 +129,9 @@ class CsvParser {
     if (at == std::string_view::npos) return true;
     const bool two_bytes = line_ == 1 && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"));
     fail(line_, "", "",
-         two_bytes
-             ? "is UTF-16, must be UTF-8: save it as CSV UTF-8"
-             : fmt::format("byte 0x{:02x} is not UTF-8: save the file as UTF-8", static_cast<unsigned char>(text[at])));
+         two_bytes ? "is UTF-16, must be UTF-8: save it as CSV UTF-8"
+                   : fmt::format("byte 0x{:02x} is not UTF-8: save the file as UTF-8",
+                                 static_cast<unsigned char>(text[at])));
     if (!header_) stopped_ = true;
     return false;
   }
@@ -213,7 +213,8 @@ class CsvParser {
       problems_.resize(problems_before);  // the cells were taken for the wrong columns
       stopped_ = false;
       if (filled == 0) return;
-      fail(line_, "", "", fmt::format("the row has {} cells, must have {} as the header", cells, slots_.size()));
+      fail(line_, "", "",
+           fmt::format("the row has {} cells, must have {} as the header", cells, slots_.size()));
     }
     if (problems_.size() != problems_before) return;
     for (std::size_t slot : slots_)
@@ -223,12 +224,13 @@ class CsvParser {
 
   /// The digits with a decimal point, of a cell that has a comma; empty, after its report, where it cannot be read.
   std::string_view with_point(std::string_view cell, const CsvColumn& column) {
-    const bool other =
-        cell.find('.') != std::string_view::npos || cell.find(',', cell.find(',') + 1) != std::string_view::npos;
+    const bool other = cell.find('.') != std::string_view::npos ||
+                       cell.find(',', cell.find(',') + 1) != std::string_view::npos;
     if (other || point_seen_) {
       fail(line_, column.name, shown(cell),
            other ? "must be a number without separators between thousands"
-                 : "has a comma, numbers before it a decimal point: must have a decimal point and no other separator");
+                 : "has a comma, numbers before it a decimal point: must have a decimal point and no other "
+                   "separator");
       return {};
     }
     if (!may_group_thousands(cell))
@@ -260,7 +262,8 @@ class CsvParser {
       return fail(line_, column.name, shown(cell), "must be a number");
     if (error != std::errc() || !std::isfinite(value))
       return fail(line_, column.name, shown(cell), "must be a finite number");
-    if (!column.range.contains(value)) return fail(line_, column.name, shown(cell), "must be " + column.range.phrase());
+    if (!column.range.contains(value))
+      return fail(line_, column.name, shown(cell), "must be " + column.range.phrase());
     if (column.order == CsvColumn::Order::non_decreasing) {
       if (value < previous_[slot])
         return fail(line_, column.name, shown(cell),
@@ -390,8 +393,8 @@ void CsvWriter::row(const std::vector<CsvCell>& cells) {
     if (i > 0) buffer_ += ',';
     if (const double* number = std::get_if<double>(&cells[i])) {
       if (!std::isfinite(*number))
-        throw std::domain_error(
-            fmt::format("{}: row {}, {} = {}: not finite, not written", path_.string(), rows_, columns_[i], *number));
+        throw std::domain_error(fmt::format("{}: row {}, {} = {}: not finite, not written", path_.string(),
+                                            rows_, columns_[i], *number));
       fmt::format_to(std::back_inserter(buffer_), "{}", *number);
     } else if (const long long* count = std::get_if<long long>(&cells[i])) {
       fmt::format_to(std::back_inserter(buffer_), "{}", *count);

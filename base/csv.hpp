@@ -31,7 +31,8 @@ struct CsvTable {
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path& path, const std::vector<CsvColumn>& columns);
 
 /// The same from text in memory; `name` stands for the file in messages.
-[[nodiscard]] CsvTable parse_csv(const std::string& name, std::string_view text, const std::vector<CsvColumn>& columns);
+[[nodiscard]] CsvTable parse_csv(const std::string& name, std::string_view text,
+                                 const std::vector<CsvColumn>& columns);
 
 inline constexpr std::size_t csv_problem_limit = 20;
 inline constexpr std::size_t csv_line_limit = 1u << 20u;  ///< longest line [byte]

@@ -19,7 +19,8 @@ struct CsvColumn {
   /// Name with a unit that the data have where they are used, "force_N", of a column that the file which names this one may rename by
   /// `columns = {...}` and scale by `scale = {...}`: messages then say how. Empty: it cannot be renamed.
   std::string meaning = {};
-  bool scaled = false;  ///< a scale is declared: units that the file gives are not compared with that of the meaning
+  bool scaled =
+      false;  ///< a scale is declared: units that the file gives are not compared with that of the meaning
 };
 
 }  // namespace snare::base

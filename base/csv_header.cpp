@@ -26,7 +26,8 @@ bool is_required(const CsvColumn& column) {
 
 bool is_number(std::string text) {
   std::ranges::replace(text, ',', '.');
-  const std::string_view digits = text.starts_with('+') ? std::string_view(text).substr(1) : std::string_view(text);
+  const std::string_view digits =
+      text.starts_with('+') ? std::string_view(text).substr(1) : std::string_view(text);
   double value = 0.0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   return error == std::errc() && end == digits.data() + digits.size();
@@ -123,9 +124,10 @@ class Changes {
   }
   [[nodiscard]] std::string text() const {
     if (columns_.empty()) return "";
-    const std::string scale = scales_.empty() ? "" : fmt::format(" and scale = {{ {} }}", fmt::join(scales_, ", "));
-    return fmt::format("; {} columns = {{ {} }}{}", all_near_ ? "if so, write" : "name it:", fmt::join(columns_, ", "),
-                       scale);
+    const std::string scale =
+        scales_.empty() ? "" : fmt::format(" and scale = {{ {} }}", fmt::join(scales_, ", "));
+    return fmt::format("; {} columns = {{ {} }}{}",
+                       all_near_ ? "if so, write" : "name it:", fmt::join(columns_, ", "), scale);
   }
 
  private:
@@ -147,12 +149,14 @@ struct Likeliest {
   std::vector<FoundColumn> columns = {};
 };
 
-Likeliest likeliest_header(const CsvLines& lines, std::optional<char> separator, std::span<const CsvColumn> columns) {
+Likeliest likeliest_header(const CsvLines& lines, std::optional<char> separator,
+                           std::span<const CsvColumn> columns) {
   Likeliest best;
   std::pair<std::size_t, std::size_t> highest{0, 0};
   for (std::size_t i = 0; i < lines.size(); ++i) {
     for (const char one : separators) {
-      if (one != separator.value_or(one) || (one == ' ' && !best.columns.empty() && best.columns.size() > 1)) continue;
+      if (one != separator.value_or(one) || (one == ' ' && !best.columns.empty() && best.columns.size() > 1))
+        continue;
       std::vector<FoundColumn> there;
       for (std::string& name : cells_of(lines[i].second, one)) {
         std::optional<NamedUnit> unit = unit_in_name(name);
@@ -188,7 +192,8 @@ std::string_view next_cell(std::string_view line, char separator, std::size_t& a
     if (!quoted && (blanks ? is_blank(line[end]) : line[end] == separator)) break;
   }
   std::string_view cell = trimmed(line.substr(at, end - at));
-  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trimmed(cell.substr(1, cell.size() - 2));
+  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
+    cell = trimmed(cell.substr(1, cell.size() - 2));
   if (blanks)
     while (end < line.size() && is_blank(line[end])) ++end;
   const bool more = blanks ? end < line.size() : end < line.size();
@@ -233,8 +238,8 @@ bool holds_numbers(std::string_view line) {
   });
 }
 
-std::vector<InputProblem> missing_columns(const std::string& file, const CsvLines& lines, std::optional<char> separator,
-                                          std::span<const CsvColumn> columns) {
+std::vector<InputProblem> missing_columns(const std::string& file, const CsvLines& lines,
+                                          std::optional<char> separator, std::span<const CsvColumn> columns) {
   const Likeliest header = likeliest_header(lines, separator, columns);
   std::vector<InputProblem> problems;
   const auto is_there = [&](const CsvColumn& wanted) {
@@ -245,8 +250,9 @@ std::vector<InputProblem> missing_columns(const std::string& file, const CsvLine
   for (const CsvColumn& wanted : columns) {
     if (!is_required(wanted) || is_there(wanted)) continue;
     const FoundColumn* near = nearest(header.columns, wanted);
-    std::string requirement = nameless ? "no such column; the first line that is not a comment must name the columns"
-                                       : missing_column(header.columns, near);
+    std::string requirement =
+        nameless ? "no such column; the first line that is not a comment must name the columns"
+                 : missing_column(header.columns, near);
     problems.push_back({file, header.line, wanted.name, "", std::move(requirement)});
     if (!nameless && !wanted.meaning.empty()) changes.add(near, wanted);
   }
@@ -260,8 +266,8 @@ std::optional<std::string> unit_problem(const CsvColumn& column, const NamedUnit
   if (asked->quantity != found.quantity)
     return fmt::format("is in {}, must be in a unit like that of {}", found.name, column.meaning);
   if (std::abs(found.si / asked->si - 1.0) < 1e-12) return std::nullopt;
-  return fmt::format("is in {}, not in that of {}: write scale = {{ {} = {:.12g} }}", found.name, column.meaning,
-                     toml_text(column.name), found.si / asked->si);
+  return fmt::format("is in {}, not in that of {}: write scale = {{ {} = {:.12g} }}", found.name,
+                     column.meaning, toml_text(column.name), found.si / asked->si);
 }
 
 }  // namespace snare::base

@@ -110,7 +110,8 @@ void remove_abandoned_files(const std::filesystem::path& folder) {
 InputFile open_input(const std::filesystem::path& path) {
   // The system would cut a name at a zero byte and open another file than the one that was named.
   if (path.empty()) refuse(path, "the name of the file is empty");
-  if (path.native().find('\0') != std::string::npos) refuse(path.c_str(), "a zero byte in the name of the file");
+  if (path.native().find('\0') != std::string::npos)
+    refuse(path.c_str(), "a zero byte in the name of the file");
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(path, code);
   if (status.type() == std::filesystem::file_type::not_found) refuse(path, "no such file");
@@ -191,7 +192,8 @@ void AtomicFile::forget() {
 
 void AtomicFile::write(std::string_view text) {
   assert(handle_ && "write after commit");
-  if (std::fwrite(text.data(), 1, text.size(), handle_.get()) != text.size()) fail(errno, path_, "cannot be written");
+  if (std::fwrite(text.data(), 1, text.size(), handle_.get()) != text.size())
+    fail(errno, path_, "cannot be written");
 }
 
 // Its content is on the disk before its name is: after a loss of power, too, the name stands for a whole file. Where a file

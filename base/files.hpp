@@ -28,7 +28,8 @@ struct InputFile {
 
 /// The next bytes of an open file: `size` of them, fewer at its end only. Throws InputError, naming `path`,
 /// when the system cannot read on.
-[[nodiscard]] std::size_t read_bytes(std::FILE* file, char* to, std::size_t size, const std::filesystem::path& path);
+[[nodiscard]] std::size_t read_bytes(std::FILE* file, char* to, std::size_t size,
+                                     const std::filesystem::path& path);
 
 /// The whole content of a regular file of at most `limit` bytes. Throws InputError as open_input, and when
 /// the file is longer.

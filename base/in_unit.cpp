@@ -20,7 +20,9 @@ double decimal_of(double shown, double si, double unit) {
   double rounded = shown;
   if (error == std::errc()) std::from_chars(text.data(), end, rounded);
   // As this number but for the round-off of reading and of what was done with it since.
-  return std::abs(to_si(rounded, unit) - si) <= std::numeric_limits<double>::epsilon() * std::abs(si) ? rounded : shown;
+  return std::abs(to_si(rounded, unit) - si) <= std::numeric_limits<double>::epsilon() * std::abs(si)
+             ? rounded
+             : shown;
 }
 
 }  // namespace

@@ -42,7 +42,8 @@ std::shared_ptr<const std::string> Inputs::text(const fs::path& path, std::size_
     return text;
   }
   if (const std::size_t size = found->second.text->size(); size > limit)
-    throw InputError({path.string(), 0, "", "", fmt::format("has {} bytes, must have at most {}", size, limit)});
+    throw InputError(
+        {path.string(), 0, "", "", fmt::format("has {} bytes, must have at most {}", size, limit)});
   return found->second.text;
 }
 
@@ -53,13 +54,13 @@ std::vector<Inputs::File> Inputs::files() const {
   return all;
 }
 
-void Inputs::protect(const fs::path& output) const {
+void Inputs::protect(const fs::path& output, const std::string& key) const {
   const fs::path entry = entry_of(output);
   const std::scoped_lock lock(mutex_);
   for (const auto& [name, input] : entries_) {
     if (name == entry.string() || input.resolved == entry)
       throw InputError(
-          {input.path.string(), 0, "--out", output.parent_path().string(),
+          {input.path.string(), 0, key, output.parent_path().string(),
            fmt::format("must be another folder: {} would overwrite this input", output.filename().string())});
   }
 }
@@ -68,7 +69,8 @@ std::shared_ptr<Inputs> current_inputs() noexcept {
   return of_thread;
 }
 
-InputScope::InputScope(std::shared_ptr<Inputs> inputs) : before_(std::exchange(of_thread, std::move(inputs))) {}
+InputScope::InputScope(std::shared_ptr<Inputs> inputs)
+    : before_(std::exchange(of_thread, std::move(inputs))) {}
 
 InputScope::~InputScope() {
   of_thread = std::move(before_);

@@ -24,8 +24,9 @@ class Inputs {
   /// throws.
   [[nodiscard]] std::shared_ptr<const std::string> text(const std::filesystem::path& path, std::size_t limit,
                                                         const std::function<std::string()>& read);
-  /// Throws InputError where a file of this name would take the place of one that was read.
-  void protect(const std::filesystem::path& output) const;
+  /// Throws InputError where a file of this name would take the place of one that was read. key: argument that names the folder, for the
+  /// message.
+  void protect(const std::filesystem::path& output, const std::string& key = "--out") const;
 
  private:
   struct Entry {

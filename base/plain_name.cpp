@@ -26,9 +26,10 @@ void require_plain_name(const TomlTable& table, std::string_view key, std::strin
   if (!name.empty() && name.size() <= longest && std::all_of(name.begin(), name.end(), fits) &&
       is_letter_or_digit(name.front()))
     return;
-  table.fail(key,
-             fmt::format("must be 1 to {} letters, digits, spaces or \"_-.+()\", the first a letter, a digit or '_'",
-                         longest));
+  table.fail(
+      key,
+      fmt::format("must be 1 to {} letters, digits, spaces or \"_-.+()\", the first a letter, a digit or '_'",
+                  longest));
 }
 
 bool names_a_column(std::string_view text) {

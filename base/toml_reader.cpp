@@ -77,7 +77,8 @@ std::string nearest_or_all(std::string_view word, const std::vector<std::string>
 TomlDocument::TomlDocument(const std::filesystem::path& file, const std::vector<Override>& overrides)
     : TomlDocument(file.string(), read_text(file, size_limit), overrides) {}
 
-TomlDocument::TomlDocument(const std::string& file, std::string_view text, const std::vector<Override>& overrides)
+TomlDocument::TomlDocument(const std::string& file, std::string_view text,
+                           const std::vector<Override>& overrides)
     : TomlDocument(file, parse_toml(file, text), overrides) {}
 
 TomlDocument::TomlDocument(std::string file, TomlNode root, const std::vector<Override>& overrides)
@@ -108,7 +109,8 @@ std::string TomlDocument::file_of(const TomlNode* at) const {
 std::string TomlDocument::suggestion(std::string_view key, const Visit& visit) const {
   std::string nearest = nearest_word(key, {visit.asked.begin(), visit.asked.end()});
   for (const auto& [node, other] : visits_)  // the right key in the wrong table
-    if (nearest.empty() && !other.address.empty() && other.asked.contains(key)) nearest = dotted(other.address, key);
+    if (nearest.empty() && !other.address.empty() && other.asked.contains(key))
+      nearest = dotted(other.address, key);
   if (!nearest.empty()) return fmt::format("unknown key; did you mean {}?", nearest);
   std::vector<std::string> known(visit.asked.begin(), visit.asked.end());
   std::erase(known, "");  // asked for by what is said of a whole table
@@ -149,7 +151,8 @@ void TomlDocument::finish() {
   std::stable_sort(problems_.begin(), problems_.end(),
                    [&](const InputProblem& a, const InputProblem& b) { return rank(a) < rank(b); });
   if (more_)
-    problems_.push_back({file_, 0, "", "", fmt::format("and more: only {} problems are listed", problem_limit)});
+    problems_.push_back(
+        {file_, 0, "", "", fmt::format("and more: only {} problems are listed", problem_limit)});
   throw InputError(problems_);
 }
 
@@ -183,8 +186,10 @@ void TomlTable::missing(std::string_view key, const std::string& requirement) co
   // With several layers the last is the general one, where the key belongs.
   const Layer& layer = layers_.back();
   if (std::any_of(layers_.begin(), layers_.end(), [](const Layer& one) { return one.broken; })) return;
-  const bool nowhere = std::all_of(layers_.begin(), layers_.end(), [](const Layer& one) { return !one.node; });
-  InputProblem problem{document_->file_of(layer.node), layer.node ? layer.node->line : 0, layer.address, "", ""};
+  const bool nowhere =
+      std::all_of(layers_.begin(), layers_.end(), [](const Layer& one) { return !one.node; });
+  InputProblem problem{document_->file_of(layer.node), layer.node ? layer.node->line : 0, layer.address, "",
+                       ""};
   if (nowhere) {
     problem.requirement = "missing, must be a table";
   } else {
@@ -198,9 +203,12 @@ std::optional<double> TomlTable::checked(const Found& found, Range range, double
   const TomlNode& node = *found.node;
   const bool is_number = node.kind == TomlNode::Kind::number;
   if (is_number && range.contains(node.number)) return to_si(node.number, unit);
-  const std::string_view kind = !is_number ? "a number" : !std::isfinite(node.number) ? "a finite number" : "";
+  const std::string_view kind = !is_number                    ? "a number"
+                                : !std::isfinite(node.number) ? "a finite number"
+                                                              : "";
   const std::string phrase = range.phrase();
-  document_->report(node, found.address, kind.empty() ? "must be " + phrase : number_requirement(kind, range));
+  document_->report(node, found.address,
+                    kind.empty() ? "must be " + phrase : number_requirement(kind, range));
   return std::nullopt;
 }
 
@@ -284,7 +292,8 @@ std::vector<double> TomlTable::numbers(std::string_view key, std::size_t least, 
   return values;
 }
 
-std::vector<double> TomlTable::numbers_or_one(std::string_view key, std::size_t count, Range range, double unit) const {
+std::vector<double> TomlTable::numbers_or_one(std::string_view key, std::size_t count, Range range,
+                                              double unit) const {
   const Found found = find(key);
   if (found.node == nullptr || found.node->kind != TomlNode::Kind::number)
     return numbers(key, count, count, range, unit);
@@ -343,8 +352,10 @@ bool TomlTable::holds_table(std::string_view key) const {
 
 TomlTable TomlTable::table(std::string_view key) const {
   const Found found = find(key);
-  if (found.node == nullptr) return TomlTable(*document_, nullptr, dotted(address(), key), layers_.front().broken);
-  if (found.node->kind == TomlNode::Kind::table) return TomlTable(*document_, found.node, found.address, false);
+  if (found.node == nullptr)
+    return TomlTable(*document_, nullptr, dotted(address(), key), layers_.front().broken);
+  if (found.node->kind == TomlNode::Kind::table)
+    return TomlTable(*document_, found.node, found.address, false);
   document_->report(*found.node, found.address, "must be a table");
   return TomlTable(*document_, nullptr, found.address, true);
 }
@@ -371,15 +382,16 @@ void TomlTable::fail(std::string_view key, std::string requirement) const {
   const Found found = find(key);
   if (found.node != nullptr) return document_->report(*found.node, found.address, std::move(requirement));
   const Layer& layer = layers_.front();
-  InputProblem problem{document_->file_of(layer.node), layer.node ? layer.node->line : 0, dotted(layer.address, key),
-                       "", std::move(requirement)};
+  InputProblem problem{document_->file_of(layer.node), layer.node ? layer.node->line : 0,
+                       dotted(layer.address, key), "", std::move(requirement)};
   document_->add(std::move(problem));
 }
 
 void TomlTable::fail_element(std::string_view key, std::size_t index, std::string requirement) const {
   const Found found = find(key);
   if (found.node == nullptr || index >= found.node->items.size()) return fail(key, std::move(requirement));
-  document_->report(found.node->items[index], fmt::format("{}[{}]", found.address, index + 1), std::move(requirement));
+  document_->report(found.node->items[index], fmt::format("{}[{}]", found.address, index + 1),
+                    std::move(requirement));
 }
 
 }  // namespace snare::base

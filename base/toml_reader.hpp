@@ -102,9 +102,11 @@ class TomlTable {
   /// A number in `range`, both in the file's unit; `unit`: SI units in one of these (1e-3 for mm). The result is in SI, NaN after a problem.
   [[nodiscard]] double number(std::string_view key, Range range, double unit = 1.0) const;
   /// The same, or `otherwise` (in SI) where the key is absent.
-  [[nodiscard]] double number_or(std::string_view key, double otherwise, Range range, double unit = 1.0) const;
+  [[nodiscard]] double number_or(std::string_view key, double otherwise, Range range,
+                                 double unit = 1.0) const;
   /// The same; nothing where the key is absent or wrong.
-  [[nodiscard]] std::optional<double> optional_number(std::string_view key, Range range, double unit = 1.0) const;
+  [[nodiscard]] std::optional<double> optional_number(std::string_view key, Range range,
+                                                      double unit = 1.0) const;
   /// A whole number from `low` to `high`; `low` after a problem.
   [[nodiscard]] int integer(std::string_view key, int low, int high) const;
   /// The same, or `otherwise` where the key is absent.
@@ -116,8 +118,8 @@ class TomlTable {
   /// The same, or `otherwise` where the key is absent.
   [[nodiscard]] std::string text_or(std::string_view key, std::string otherwise) const;
   /// An array of numbers, `least` to `most` of them; empty after a problem. Range in the file's unit, result in SI, see `number`.
-  [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t least, std::size_t most, Range range,
-                                            double unit = 1.0) const;
+  [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t least, std::size_t most,
+                                            Range range, double unit = 1.0) const;
   /// An array of `count` numbers, or one number for all of them; empty after a problem. In SI, see `number`.
   [[nodiscard]] std::vector<double> numbers_or_one(std::string_view key, std::size_t count, Range range,
                                                    double unit = 1.0) const;
@@ -126,7 +128,8 @@ class TomlTable {
 
   /// One of a few names; nothing after a problem.
   template <class Value, std::size_t count>
-  [[nodiscard]] std::optional<Value> choice(std::string_view key, const Choice<Value> (&choices)[count]) const {
+  [[nodiscard]] std::optional<Value> choice(std::string_view key,
+                                            const Choice<Value> (&choices)[count]) const {
     std::vector<std::string_view> names;
     for (const auto& one : choices) names.push_back(one.name);
     const std::optional<std::size_t> index = choice_index(key, names);

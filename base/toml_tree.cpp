@@ -49,12 +49,13 @@ std::string code_points(std::string_view line, std::size_t from, std::size_t to)
 std::string written_text(const toml::node& node, const std::vector<std::string_view>& lines) {
   const toml::source_region& region = node.source();
   if (const toml::table* table = node.as_table(); table != nullptr && !table->is_inline()) return {};
-  if (node.is_array_of_tables() && !node.as_array()->empty() && !node.as_array()->front().as_table()->is_inline())
+  if (node.is_array_of_tables() && !node.as_array()->empty() &&
+      !node.as_array()->front().as_table()->is_inline())
     return {};
   if (region.begin.line == 0 || region.begin.line > lines.size()) return {};
   const bool one_line = region.begin.line == region.end.line;
-  const std::size_t last = std::min<std::size_t>(one_line ? region.end.column : region.begin.column + shown_value,
-                                                 region.begin.column + shown_value);
+  const std::size_t last = std::min<std::size_t>(
+      one_line ? region.end.column : region.begin.column + shown_value, region.begin.column + shown_value);
   std::string text = code_points(lines[region.begin.line - 1], region.begin.column, last);
   if (!one_line || region.end.column > last) text += "...";
   return text;
@@ -66,7 +67,8 @@ TomlNode converted(const toml::node& node, const std::vector<std::string_view>& 
   result.line = static_cast<int>(node.source().begin.line);
   result.written = written_text(node, lines);
   if (const toml::table* table = node.as_table()) {
-    for (const auto& [key, value] : *table) result.entries.push_back({std::string(key.str()), converted(value, lines)});
+    for (const auto& [key, value] : *table)
+      result.entries.push_back({std::string(key.str()), converted(value, lines)});
   } else if (const toml::array* array = node.as_array()) {
     result.kind = TomlNode::Kind::array;
     for (const toml::node& item : *array) result.items.push_back(converted(item, lines));
@@ -172,7 +174,8 @@ std::optional<TomlNode> parse_value(const std::string& value) {
   } catch (const InputError&) {
     if (find_invalid_utf8(value) != std::string_view::npos) return std::nullopt;
   }
-  if (value.empty() || std::string_view("\"'[{").find(value.front()) != std::string_view::npos) return std::nullopt;
+  if (value.empty() || std::string_view("\"'[{").find(value.front()) != std::string_view::npos)
+    return std::nullopt;
   TomlNode node;
   node.kind = TomlNode::Kind::text;
   node.text = node.written = value;
@@ -266,8 +269,9 @@ TomlNode parse_toml(const std::string& file, std::string_view text) {
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   if (const std::size_t at = find_invalid_utf8(text); at != std::string_view::npos) {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
-    throw InputError(InputProblem{file, static_cast<int>(line), "", "",
-                                  fmt::format("byte 0x{:02x} is not UTF-8", static_cast<unsigned char>(text[at]))});
+    throw InputError(
+        InputProblem{file, static_cast<int>(line), "", "",
+                     fmt::format("byte 0x{:02x} is not UTF-8", static_cast<unsigned char>(text[at]))});
   }
   check_outside_strings(file, text);
   try {
@@ -317,7 +321,8 @@ std::string canonical_text(const TomlNode& node) {
     case TomlNode::Kind::table: {
       std::vector<const TomlEntry*> sorted;
       for (const TomlEntry& e : node.entries) sorted.push_back(&e);
-      std::sort(sorted.begin(), sorted.end(), [](const TomlEntry* a, const TomlEntry* b) { return a->key < b->key; });
+      std::sort(sorted.begin(), sorted.end(),
+                [](const TomlEntry* a, const TomlEntry* b) { return a->key < b->key; });
       std::string text = "{";
       for (const TomlEntry* e : sorted)
         text += fmt::format("{}:{}={};", e->key.size(), e->key, canonical_text(e->node));

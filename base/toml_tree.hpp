@@ -31,15 +31,15 @@ struct TomlNode {
   enum class Kind { table, array, text, number, boolean, other };
 
   Kind kind = Kind::table;
-  std::vector<TomlEntry> entries;        ///< table
-  std::vector<TomlNode> items;           ///< array
-  std::string text;                      ///< text
-  double number = 0.0;                   ///< number; may be NaN or infinite
-  bool integer = false;                  ///< the number was written as an integer (dates and times are `other`)
-  bool boolean = false;                  ///< boolean
-  std::string written;                   ///< as it stands in the file, shortened; empty for a table with a header
-  int line = 0;                          ///< 1-based; 0 for an overridden value
-  bool overridden = false;               ///< given by --set
+  std::vector<TomlEntry> entries;  ///< table
+  std::vector<TomlNode> items;     ///< array
+  std::string text;                ///< text
+  double number = 0.0;             ///< number; may be NaN or infinite
+  bool integer = false;            ///< the number was written as an integer (dates and times are `other`)
+  bool boolean = false;            ///< boolean
+  std::string written;             ///< as it stands in the file, shortened; empty for a table with a header
+  int line = 0;                    ///< 1-based; 0 for an overridden value
+  bool overridden = false;         ///< given by --set
   std::shared_ptr<const TomlPart> part;  ///< in which it is written; null: in the file itself
 
   /// Entry of a table, or null.

@@ -56,8 +56,8 @@ std::size_t unit_begin(std::string_view name) {
 
 std::optional<NamedUnit> unit_of(std::string_view text) {
   text = trimmed(text);
-  const bool bracketed =
-      text.size() > 2 && ((text.front() == '(' && text.back() == ')') || (text.front() == '[' && text.back() == ']'));
+  const bool bracketed = text.size() > 2 && ((text.front() == '(' && text.back() == ')') ||
+                                             (text.front() == '[' && text.back() == ']'));
   if (bracketed) text = trimmed(text.substr(1, text.size() - 2));
   const auto found = std::ranges::find(units, text, &NamedUnit::name);
   return found == std::end(units) ? std::nullopt : std::optional(*found);

@@ -75,7 +75,8 @@ class Scanner {
 
   [[nodiscard]] std::string_view word() {
     const std::size_t begin = at_;
-    while (at_ < text_.size() && !is_space(text_[at_]) && text_.substr(at_, 1).find_first_of("=/><\"'") != 0) ++at_;
+    while (at_ < text_.size() && !is_space(text_[at_]) && text_.substr(at_, 1).find_first_of("=/><\"'") != 0)
+      ++at_;
     return text_.substr(begin, at_ - begin);
   }
 
@@ -99,8 +100,9 @@ class Scanner {
   void open() {
     XmlElement element;
     element.begin = at_;
-    element.line = line_ + static_cast<int>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(counted_),
-                                                       text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n'));
+    element.line =
+        line_ + static_cast<int>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(counted_),
+                                            text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n'));
     line_ = element.line;
     counted_ = at_;
     element.parent = open_.empty() ? -1 : static_cast<int>(open_.back());
@@ -110,7 +112,8 @@ class Scanner {
     element.name = word();
     if (element.name.empty()) fail("must have the name of an element after <");
     element.name_end = at_;
-    for (skip_space(); at_ < text_.size() && text_[at_] != '>' && text_[at_] != '/'; skip_space()) attribute(element);
+    for (skip_space(); at_ < text_.size() && text_[at_] != '>' && text_[at_] != '/'; skip_space())
+      attribute(element);
     element.empty = at_ < text_.size() && text_[at_] == '/';
     if (element.empty) ++at_;
     if (at_ >= text_.size() || text_[at_] != '>') fail("must close the tag <" + element.name + " ...>");
@@ -145,7 +148,8 @@ class Scanner {
 }  // namespace
 
 std::optional<std::string> XmlElement::attribute(std::string_view key) const {
-  const auto found = std::ranges::find(attributes, key, [](const auto& a) { return std::string_view(a.first); });
+  const auto found =
+      std::ranges::find(attributes, key, [](const auto& a) { return std::string_view(a.first); });
   return found == attributes.end() ? std::nullopt : std::optional(found->second);
 }
 
@@ -168,7 +172,8 @@ std::string xml_escaped(std::string_view text) {
   return safe;
 }
 
-std::string with_insertions(std::string_view text, std::vector<std::pair<std::size_t, std::string>> insertions) {
+std::string with_insertions(std::string_view text,
+                            std::vector<std::pair<std::size_t, std::string>> insertions) {
   std::ranges::stable_sort(insertions, {}, [](const auto& one) { return one.first; });
   std::string result;
   std::size_t done = 0;

@@ -13,12 +13,13 @@ namespace snare::base {
 /// keep the rest.
 struct XmlElement {
   std::string name;
-  std::vector<std::pair<std::string, std::string>> attributes;  ///< in the order of the text, entities resolved
-  int line = 0;                                                 ///< of the opening tag, from 1
-  int parent = -1;                                              ///< index in XmlText::elements; -1: the root
-  std::size_t begin = 0;                                        ///< offset of the opening tag's '<'
-  std::size_t name_end = 0;                                     ///< offset after the name in the opening tag
-  std::size_t open_end = 0;                                     ///< offset after the opening tag's '>'
+  std::vector<std::pair<std::string, std::string>>
+      attributes;               ///< in the order of the text, entities resolved
+  int line = 0;                 ///< of the opening tag, from 1
+  int parent = -1;              ///< index in XmlText::elements; -1: the root
+  std::size_t begin = 0;        ///< offset of the opening tag's '<'
+  std::size_t name_end = 0;     ///< offset after the name in the opening tag
+  std::size_t open_end = 0;     ///< offset after the opening tag's '>'
   std::size_t close_begin = 0;  ///< offset of the closing tag's '<'; open_end where the element closes itself
   std::size_t end = 0;          ///< offset after the element
   bool empty = false;           ///< closes itself: <name/>

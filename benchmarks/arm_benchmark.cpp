@@ -53,10 +53,12 @@ KDL::Chain kdl_chain(const multibody::Tree& tree) {
     const Eigen::Vector3d& p = body.X_PJ.p;
     const Eigen::Vector3d axis = R * body.axis, c = body.inertia.centre();
     const Eigen::Matrix3d I = body.inertia.about_own_centre();
-    const KDL::Frame X(KDL::Rotation(R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)),
-                       KDL::Vector(p.x(), p.y(), p.z()));
+    const KDL::Frame X(
+        KDL::Rotation(R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)),
+        KDL::Vector(p.x(), p.y(), p.z()));
     chain.addSegment(KDL::Segment(
-        body.name, KDL::Joint(body.name, X.p, KDL::Vector(axis.x(), axis.y(), axis.z()), KDL::Joint::RotAxis), X,
+        body.name, KDL::Joint(body.name, X.p, KDL::Vector(axis.x(), axis.y(), axis.z()), KDL::Joint::RotAxis),
+        X,
         KDL::RigidBodyInertia(body.inertia.mass, KDL::Vector(c.x(), c.y(), c.z()),
                               KDL::RotationalInertia(I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)))));
   }
@@ -115,7 +117,8 @@ void InverseDynamicsOwn(benchmark::State& state) {
   const Case c;
   multibody::DynamicsWorkspace workspace(c.arm.arm.tree);
   run(state, [&](std::size_t i) {
-    benchmark::DoNotOptimize(multibody::inverse_dynamics(c.arm.arm.tree, c.q[i], c.v[i], c.a[i], {}, workspace).data());
+    benchmark::DoNotOptimize(
+        multibody::inverse_dynamics(c.arm.arm.tree, c.q[i], c.v[i], c.a[i], {}, workspace).data());
   });
 }
 void InverseDynamicsKdl(benchmark::State& state) {
@@ -164,7 +167,8 @@ void ForwardDynamicsOwn(benchmark::State& state) {
   const Case c;
   multibody::DynamicsWorkspace workspace(c.arm.arm.tree);
   run(state, [&](std::size_t i) {
-    benchmark::DoNotOptimize(multibody::forward_dynamics(c.arm.arm.tree, c.q[i], c.v[i], c.a[i], {}, workspace).data());
+    benchmark::DoNotOptimize(
+        multibody::forward_dynamics(c.arm.arm.tree, c.q[i], c.v[i], c.a[i], {}, workspace).data());
   });
 }
 void ForwardDynamicsKdl(benchmark::State& state) {
@@ -200,8 +204,8 @@ void InverseDynamicsDerivativesOwn(benchmark::State& state) {
 /// The seven-joint elastic arm pushed at its tip, and 60 s of its swinging.
 void ElasticArmAgainstTheClock(benchmark::State& state) {
   const multibody::ArmDescription arm = multibody::read_arm(arms() / "ssrms_like.toml");
-  multibody::ArmScenario run =
-      scenario::tip_impulse(arm, arm.poses[1].angles, scenario::Hold::as_described, {0.0, 200.0, 0.0}, 0.5, 60.0);
+  multibody::ArmScenario run = scenario::tip_impulse(arm, arm.poses[1].angles, scenario::Hold::as_described,
+                                                     {0.0, 200.0, 0.0}, 0.5, 60.0);
   run.sample = 0.5;
   run.ida.relative_tolerance = 1e-4;
   run.tolerances = {1e-6, 1e-3};  // the tip moves a few centimetres, 1e-6 rad are 17 micrometres there

@@ -76,10 +76,12 @@ struct Outcome {
   double seconds = 0.0;
   double made_size = 0.0;
   bool decided = false;
-  bool partial = false;  // of several effects some are named and none that is not inside, or none at all as unexplained
-  double probability = 0.0;                      // of the hypotheses that hold what is inside; 0 without hypotheses
-  std::string leading;                           // hypothesis, with its variable where an unknown function leads
-  std::vector<std::pair<double, bool>> weighed;  // probabilities from 0.01 to 0.99, and which are of what is inside
+  bool partial =
+      false;  // of several effects some are named and none that is not inside, or none at all as unexplained
+  double probability = 0.0;  // of the hypotheses that hold what is inside; 0 without hypotheses
+  std::string leading;       // hypothesis, with its variable where an unknown function leads
+  std::vector<std::pair<double, bool>>
+      weighed;  // probabilities from 0.01 to 0.99, and which are of what is inside
   bool finished = false;
   bool reached = true;  // the effect could be made that large (weight cannot)
 };
@@ -102,8 +104,8 @@ void weigh(const validation::BlindSet& set, const identification::Trace& t, Outc
   }
   if (t.hypotheses.empty()) return;
   const identification::CauseHypothesis& first = t.hypotheses.front();
-  o.leading =
-      fmt::format("{}{}{}", fmt::join(first.effects, "+"), first.discrepancy.empty() ? "" : "~", first.discrepancy);
+  o.leading = fmt::format("{}{}{}", fmt::join(first.effects, "+"), first.discrepancy.empty() ? "" : "~",
+                          first.discrepancy);
 }
 
 Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
@@ -140,7 +142,8 @@ Outcome judge(const validation::BlindSet& set, const identification::Trace& t) {
   // The numbers of the base model may take up an effect whole: then nothing else is to be named.
   if (!t.rounds.empty()) {
     for (const identification::Candidate& c : t.rounds.front().candidates) {
-      if (c.score.effect->name == set.effect && c.score.absorbed && t.selected.empty() && t.explained) o.right = true;
+      if (c.score.effect->name == set.effect && c.score.absorbed && t.selected.empty() && t.explained)
+        o.right = true;
     }
   }
   if (set.effect == "none") o.right = t.selected.empty() && t.explained;
@@ -240,8 +243,8 @@ std::vector<Outcome> read_sets(const std::string& file, const std::vector<Case>&
 
 /// Counts of one size.
 struct Totals {
-  double inside = 0, right = 0, class_size = 0, mechanisms = 0, undecided = 0, numbers = 0, covered = 0, at_noise = 0,
-         left_out = 0;
+  double inside = 0, right = 0, class_size = 0, mechanisms = 0, undecided = 0, numbers = 0, covered = 0,
+         at_noise = 0, left_out = 0;
   double decided = 0, decided_right = 0;  // effects that were named, of causes inside and outside
   double outside = 0, silent = 0, channel = 0, named = 0;
   double pairs = 0, both = 0, part = 0, asked = 0, effect_covered = 0;
@@ -249,8 +252,9 @@ struct Totals {
 
 /// Counts over the sets that are finished.
 nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome>& outcomes) {
-  nlohmann::json result{
-      {"schema", "snare-blind/1"}, {"matrix", nlohmann::json::object()}, {"not_reached", nlohmann::json::object()}};
+  nlohmann::json result{{"schema", "snare-blind/1"},
+                        {"matrix", nlohmann::json::object()},
+                        {"not_reached", nlohmann::json::object()}};
   std::map<double, Totals> totals;
   double quiet = 0.0, nothing = 0.0, seconds = 0.0, finished = 0.0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -267,7 +271,8 @@ nlohmann::json summary(const std::vector<Case>& cases, const std::vector<Outcome
     if (cell.is_null())
       cell = {{"right", 0}, {"sets", 0}, {"mean_class_size", 0.0}, {"answers", nlohmann::json::object()}};
     const double before = cell["sets"];
-    cell["mean_class_size"] = (before * cell["mean_class_size"].get<double>() + o.class_size) / (before + 1.0);
+    cell["mean_class_size"] =
+        (before * cell["mean_class_size"].get<double>() + o.class_size) / (before + 1.0);
     cell["right"] = cell.value("right", 0) + (o.right ? 1 : 0);
     cell["sets"] = cell.value("sets", 0) + 1;
     cell["answers"][o.answer] = cell["answers"].value(o.answer, 0) + 1;
@@ -408,10 +413,12 @@ int main(int argc, char** argv) try {
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const Case& c = cases[static_cast<std::size_t>(i)];
     if (outcomes[static_cast<std::size_t>(i)].finished) continue;
-    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() > 60.0 * minutes) continue;
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() > 60.0 * minutes)
+      continue;
     Outcome o;
     try {
-      const validation::BlindSet set = validation::make_blind_set(c.effect, c.size, c.seed, design_of(c.design));
+      const validation::BlindSet set =
+          validation::make_blind_set(c.effect, c.size, c.seed, design_of(c.design));
       const bool absorbed_whole = c.effect == "force_gain";  // scales with EI and EA: no size at all
       if (c.effect != "none" && !absorbed_whole && set.size < 0.8 * c.size) {
         const std::lock_guard lock(mutex);
@@ -435,12 +442,14 @@ int main(int argc, char** argv) try {
     outcomes[static_cast<std::size_t>(i)] = o;
     journal << line_of(c, o).dump() << std::endl;
     fmt::print(
-        "{} {} seed {} size {:g} ({:.3g}): {} P {:.3f} {} chi2 {:.3f} class {:.1f} deviates {:.1f} covered {} ({:.2f} "
+        "{} {} seed {} size {:g} ({:.3g}): {} P {:.3f} {} chi2 {:.3f} class {:.1f} deviates {:.1f} covered "
+        "{} ({:.2f} "
         "s)\n",
-        o.right ? "ok   " : "WRONG", c.effect, c.seed, c.size, o.made_size, o.answer, o.probability, o.leading,
-        o.chi2_dof, o.class_size, fmt::join(o.deviates, " "), o.covered, o.seconds);
+        o.right ? "ok   " : "WRONG", c.effect, c.seed, c.size, o.made_size, o.answer, o.probability,
+        o.leading, o.chi2_dof, o.class_size, fmt::join(o.deviates, " "), o.covered, o.seconds);
     std::fflush(stdout);
-    if (!out.empty()) base::write_text(out, summary(cases, outcomes).dump(1) + "\n");  // kept if the run is stopped
+    if (!out.empty())
+      base::write_text(out, summary(cases, outcomes).dump(1) + "\n");  // kept if the run is stopped
   }
 
   const nlohmann::json result = summary(cases, outcomes);

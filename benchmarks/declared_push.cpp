@@ -94,7 +94,8 @@ PressedWire buckled_shape(int elements) {
 void newton_iteration(coupling::PushSystem& system, const numerics::PathPoint& point,
                       numerics::PathWorkspace& workspace) {
   system.assemble(point, workspace.system, workspace.by_parameter);
-  if (!std::isfinite(system.error(point, workspace.system))) throw std::runtime_error("a residual is not finite");
+  if (!std::isfinite(system.error(point, workspace.system)))
+    throw std::runtime_error("a residual is not finite");
   if (!workspace.solver.factorize(workspace.system)) throw std::runtime_error("the matrix is singular");
   workspace.band_step = -workspace.system.band_residual;
   workspace.border_step = -workspace.system.border_residual;

@@ -22,7 +22,8 @@ json subsets(const benchmarks::Seeds& seeds) {
       for (const benchmarks::LimitFunction& limit : {smooth, benchmarks::yes_or_no(smooth)}) {
         const double held = benchmarks::subset_coverage(limit, cases, seeds).share();
         fmt::print("subset, {}, P = {:g}: {:.3f}\n", limit.name, probability, held);
-        all.push_back({{"limit", limit.name}, {"probability", probability}, {"cases", cases}, {"held", held}});
+        all.push_back(
+            {{"limit", limit.name}, {"probability", probability}, {"cases", cases}, {"held", held}});
       }
     }
   }
@@ -39,7 +40,8 @@ json shares(const benchmarks::Seeds& seeds) {
       for (const benchmarks::LimitFunction& limit : benchmarks::limit_functions(probability)) {
         const double held = benchmarks::share_coverage(limit, kind, cases, seeds).share();
         fmt::print("share, {}, {}, P = {:g}: {:.3f}\n", name, limit.name, probability, held);
-        all.push_back({{"design", name}, {"limit", limit.name}, {"probability", probability}, {"held", held}});
+        all.push_back(
+            {{"design", name}, {"limit", limit.name}, {"probability", probability}, {"held", held}});
       }
     }
   }
@@ -49,8 +51,8 @@ json shares(const benchmarks::Seeds& seeds) {
 json indices(const benchmarks::Seeds& seeds) {
   json all = json::array();
   const std::vector<double> a{0.0, 1.0, 4.5, 9.0, 99.0, 99.0};
-  for (const benchmarks::IndexFunction& f :
-       {benchmarks::ishigami(), benchmarks::g_function(a), benchmarks::box(0.1, 2), benchmarks::box(0.01, 2)}) {
+  for (const benchmarks::IndexFunction& f : {benchmarks::ishigami(), benchmarks::g_function(a),
+                                             benchmarks::box(0.1, 2), benchmarks::box(0.01, 2)}) {
     for (const std::uint64_t rows : {256u, 1024u, 4096u}) {
       const benchmarks::IndexCoverage c = benchmarks::index_coverage(f, rows, seeds);
       if (c.first.studies == 0) continue;

@@ -51,11 +51,14 @@ inline std::vector<LimitFunction> limit_functions(double probability) {
 /// The same event seen only as yes or no.
 inline LimitFunction yes_or_no(LimitFunction limit) {
   limit.name += ", yes or no";
-  limit.margin = [margin = limit.margin](const std::vector<double>& z) { return margin(z) >= 0.0 ? 0.5 : -0.5; };
+  limit.margin = [margin = limit.margin](const std::vector<double>& z) {
+    return margin(z) >= 0.0 ? 0.5 : -0.5;
+  };
   return limit;
 }
 
-inline study::SubsetSimulation simulated(const LimitFunction& limit, std::uint64_t cases, std::uint64_t seed) {
+inline study::SubsetSimulation simulated(const LimitFunction& limit, std::uint64_t cases,
+                                         std::uint64_t seed) {
   study::SubsetSimulation simulation({.dimension = limit.dimension, .cases = cases, .seed = seed});
   while (!simulation.finished()) {
     std::vector<std::optional<double>> margins;
@@ -91,7 +94,8 @@ inline bool contains(const study::ProbabilityInterval& interval, double probabil
 inline Coverage subset_coverage(const LimitFunction& limit, std::uint64_t cases, const Seeds& seeds) {
   Coverage coverage;
   for (int seed = seeds.first; seed < seeds.end(); ++seed)
-    coverage.add(contains(simulated(limit, cases, static_cast<std::uint64_t>(seed)).interval(), limit.probability));
+    coverage.add(
+        contains(simulated(limit, cases, static_cast<std::uint64_t>(seed)).interval(), limit.probability));
   return coverage;
 }
 
@@ -103,7 +107,8 @@ inline Coverage share_coverage(const LimitFunction& limit, study::DesignKind kin
   for (std::size_t j = 0; j < limit.dimension; ++j)
     variables.push_back({"z", {"z"}, {}, {study::Distribution::Shape::normal, 0.0, 1.0}});
   for (int seed = seeds.first; seed < seeds.end(); ++seed) {
-    const study::Design design(variables, {.kind = kind, .cases = cases, .seed = static_cast<std::uint64_t>(seed)});
+    const study::Design design(variables,
+                               {.kind = kind, .cases = cases, .seed = static_cast<std::uint64_t>(seed)});
     std::uint64_t hits = 0;
     for (std::uint64_t k = 0; k < cases; ++k) hits += limit.margin(design.values(k)) >= 0.0 ? 1 : 0;
     coverage.add(contains(study::proportion_interval(hits, cases), limit.probability));
@@ -125,11 +130,12 @@ inline IndexFunction ishigami() {
   const double v2 = a * a / 8.0;
   const double v13 = b * b * std::pow(pi, 8) * (1.0 / 18.0 - 1.0 / 50.0);
   const double v = v1 + v2 + v13;
-  return {"Ishigami", {v1 / v, v2 / v, 0.0}, {(v1 + v13) / v, v2 / v, v13 / v}, [](const std::vector<double>& u) {
-            const auto x = [&u](std::size_t j) { return std::numbers::pi * (2.0 * u[j] - 1.0); };
-            const double s = std::sin(x(1));
-            return std::sin(x(0)) + 7.0 * s * s + 0.1 * std::pow(x(2), 4) * std::sin(x(0));
-          }};
+  return {
+      "Ishigami", {v1 / v, v2 / v, 0.0}, {(v1 + v13) / v, v2 / v, v13 / v}, [](const std::vector<double>& u) {
+        const auto x = [&u](std::size_t j) { return std::numbers::pi * (2.0 * u[j] - 1.0); };
+        const double s = std::sin(x(1));
+        return std::sin(x(0)) + 7.0 * s * s + 0.1 * std::pow(x(2), 4) * std::sin(x(0));
+      }};
 }
 
 /// Saltelli, Sobol' 1995: prod (|4u - 2| + a) / (1 + a); V_j = 1 / (3 (1 + a_j)^2).
@@ -156,7 +162,8 @@ inline IndexFunction box(double probability, std::size_t variables) {
   const double variance = probability * (1.0 - probability);
   return {"yes in a box, P = " + std::to_string(probability),
           std::vector<double>(variables, probability * probability * (1.0 / q - 1.0) / variance),
-          std::vector<double>(variables, probability * (1.0 - q) / variance), [q](const std::vector<double>& u) {
+          std::vector<double>(variables, probability * (1.0 - q) / variance),
+          [q](const std::vector<double>& u) {
             for (const double one : u)
               if (one >= q) return 0.0;
             return 1.0;
@@ -166,8 +173,10 @@ inline IndexFunction box(double probability, std::size_t variables) {
 inline study::SobolIndices indices_of(const IndexFunction& f, std::uint64_t rows, std::uint64_t seed) {
   std::vector<study::Variable> variables;
   for (std::size_t j = 0; j < f.first.size(); ++j) variables.push_back({"u", {"u"}, {}, {}});
-  const study::Design design(variables, {.kind = study::DesignKind::sensitivity, .cases = rows, .seed = seed});
-  return study::sobol_indices(variables.size(), rows, [&](std::uint64_t k) { return f.value(design.values(k)); });
+  const study::Design design(variables,
+                             {.kind = study::DesignKind::sensitivity, .cases = rows, .seed = seed});
+  return study::sobol_indices(variables.size(), rows,
+                              [&](std::uint64_t k) { return f.value(design.values(k)); });
 }
 
 /// All first indices and all total indices of studies; studies without indices do not count.

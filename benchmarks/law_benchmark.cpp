@@ -21,7 +21,8 @@ int main(int count, char** arguments) try {
   std::ifstream file(arguments[2], std::ios::binary | std::ios::ate);
   std::vector<double> numbers(static_cast<std::size_t>(file.tellg()) / sizeof(double));
   file.seekg(0);
-  file.read(reinterpret_cast<char*>(numbers.data()), static_cast<std::streamsize>(numbers.size() * sizeof(double)));
+  file.read(reinterpret_cast<char*>(numbers.data()),
+            static_cast<std::streamsize>(numbers.size() * sizeof(double)));
   const std::size_t points = numbers.size() / 3;
   const double* const d = numbers.data();
   std::vector<double> force(points);
@@ -31,7 +32,8 @@ int main(int count, char** arguments) try {
                                                     snare::coupling::Outside::refuse)
                    .force;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  fmt::print("{{\"seconds\": {}, \"sum_N\": {}}}\n", seconds, std::accumulate(force.begin(), force.end(), 0.0));
+  fmt::print("{{\"seconds\": {}, \"sum_N\": {}}}\n", seconds,
+             std::accumulate(force.begin(), force.end(), 0.0));
 } catch (const std::exception& problem) {
   fmt::print(stderr, "{}\n", problem.what());
   return 1;

@@ -32,7 +32,8 @@ class BareKlu {
     klu_defaults(&common_);
     symbolic_ = klu_analyze(matrix_.order, matrix_.column_start.data(), matrix_.row.data(), &common_);
     if (symbolic_ == nullptr) throw std::runtime_error("klu_analyze failed");
-    numeric_ = klu_factor(matrix_.column_start.data(), matrix_.row.data(), matrix_.value.data(), symbolic_, &common_);
+    numeric_ = klu_factor(matrix_.column_start.data(), matrix_.row.data(), matrix_.value.data(), symbolic_,
+                          &common_);
     if (numeric_ == nullptr) {
       klu_free_symbolic(&symbolic_, &common_);
       throw std::runtime_error("klu_factor failed");
@@ -46,7 +47,8 @@ class BareKlu {
   BareKlu& operator=(const BareKlu&) = delete;
 
   void run(const Eigen::VectorXd& b) {
-    klu_refactor(matrix_.column_start.data(), matrix_.row.data(), matrix_.value.data(), symbolic_, numeric_, &common_);
+    klu_refactor(matrix_.column_start.data(), matrix_.row.data(), matrix_.value.data(), symbolic_, numeric_,
+                 &common_);
     right_ = b;
     klu_solve(symbolic_, numeric_, matrix_.order, 1, right_.data(), &common_);
     benchmark::DoNotOptimize(right_.data());
@@ -173,9 +175,10 @@ void NewtonIterationOverYardstick(benchmark::State& state) {
   numerics::BorderedSystem assembled;
   std::vector<double> times;
   for ([[maybe_unused]] auto _ : state) {
-    times = median_times({[&] { newton_iteration(*s.wire.system, s.wire.point, workspace); }, [&] { klu.run(s.right); },
-                          [&] { s.wire.system->assemble(s.wire.point, assembled, by_parameter); }},
-                         51, 20);
+    times = median_times(
+        {[&] { newton_iteration(*s.wire.system, s.wire.point, workspace); }, [&] { klu.run(s.right); },
+         [&] { s.wire.system->assemble(s.wire.point, assembled, by_parameter); }},
+        51, 20);
   }
   state.counters["newton_seconds"] = times[0];
   state.counters["yardstick_seconds"] = times[1];
@@ -183,7 +186,12 @@ void NewtonIterationOverYardstick(benchmark::State& state) {
   state.counters["ratio"] = times[0] / times[1];
 }
 
-BENCHMARK(NewtonIterationOverYardstick)->Arg(128)->Arg(256)->Arg(512)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(NewtonIterationOverYardstick)
+    ->Arg(128)
+    ->Arg(256)
+    ->Arg(512)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(WholeBareKlu)->Arg(256)->Arg(512)->Unit(benchmark::kMicrosecond);
 BENCHMARK(WholeKlu)->Arg(256)->Arg(512)->Unit(benchmark::kMicrosecond);
 BENCHMARK(WholeOwnBordered)->Arg(256)->Arg(512)->Unit(benchmark::kMicrosecond);

@@ -103,8 +103,8 @@ constexpr double probe = 6.0 * mm;
 coupling::Motion case_h_motion(const wire::RodInMotion& rod) {
   coupling::Motion motion;
   motion.wires.push_back({"wire", rod, coupling::resting_wire(rod), {}});
-  const double touch =
-      motion.wires[0].positions.row(1).maxCoeff() - probe - 0.5 * validation::declared_specification().diameter;
+  const double touch = motion.wires[0].positions.row(1).maxCoeff() - probe -
+                       0.5 * validation::declared_specification().diameter;
   coupling::MotionBody body;
   body.properties.mass = mass;
   body.properties.inertia = 0.16 * Eigen::Matrix3d::Identity();
@@ -269,8 +269,9 @@ void tolerances(benchmark::State& state) {
   const auto run = [&motion](double factor) {
     coupling::MotionOptions o;
     o.duration = 0.1;
-    for (double* t : {&o.relative_tolerance, &o.position_tolerance, &o.velocity_tolerance, &o.twist_tolerance,
-                      &o.body_position_tolerance, &o.body_velocity_tolerance, &o.angle_tolerance, &o.spin_tolerance}) {
+    for (double* t :
+         {&o.relative_tolerance, &o.position_tolerance, &o.velocity_tolerance, &o.twist_tolerance,
+          &o.body_position_tolerance, &o.body_velocity_tolerance, &o.angle_tolerance, &o.spin_tolerance}) {
       *t *= factor;
     }
     return coupling::simulate(motion, o);
@@ -279,7 +280,8 @@ void tolerances(benchmark::State& state) {
   coupling::MotionResult result;
   for ([[maybe_unused]] auto _ : state) result = run(std::pow(10.0, static_cast<double>(state.range(0))));
   report(state, result);
-  state.counters["impulse_error"] = (result.impulse[0] - reference.impulse[0]).norm() / reference.impulse[0].norm();
+  state.counters["impulse_error"] =
+      (result.impulse[0] - reference.impulse[0]).norm() / reference.impulse[0].norm();
   state.counters["peak_force_error"] = std::abs(result.peak_force[0] / reference.peak_force[0] - 1.0);
 }
 BENCHMARK(tolerances)->DenseRange(-2, 2)->Unit(benchmark::kMillisecond);
@@ -331,7 +333,8 @@ void scan_all_vertices(benchmark::State& state) {
   const Eigen::Vector3d place = motion.bodies[0].start.position + motion.contacts[0].X_BS.p;
   for ([[maybe_unused]] auto _ : state) {
     double least = 1.0;
-    for (const auto& x : motion.wires[0].positions.colwise()) least = std::min(least, shape->distance(x - place));
+    for (const auto& x : motion.wires[0].positions.colwise())
+      least = std::min(least, shape->distance(x - place));
     benchmark::DoNotOptimize(least);
   }
 }

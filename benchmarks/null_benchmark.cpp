@@ -178,8 +178,9 @@ nlohmann::json json_of(const Totals& t) {
   return {{"sets", t.sets},
           {"false_culprits", t.culprits},
           {"false_culprits_at_most",
-           t.culprits < t.sets ? boost::math::binomial_distribution<>::find_upper_bound_on_p(t.sets, t.culprits, 0.05)
-                               : 1.0},
+           t.culprits < t.sets
+               ? boost::math::binomial_distribution<>::find_upper_bound_on_p(t.sets, t.culprits, 0.05)
+               : 1.0},
           {"zeros_in_doubt", t.doubtful},
           {"named", t.named},
           {"verdicts", t.verdicts},
@@ -207,7 +208,8 @@ std::map<std::size_t, Outcome> read_sets(const std::string& file, const std::vec
     });
     if (at == cases.end()) continue;
     outcomes[static_cast<std::size_t>(at - cases.begin())] = {
-        line["culprit"], line["verdict"], line["effects"], line["sigma"], line["left"], line["zero"], line["seconds"]};
+        line["culprit"], line["verdict"], line["effects"], line["sigma"],
+        line["left"],    line["zero"],    line["seconds"]};
   }
   return outcomes;
 }
@@ -260,7 +262,8 @@ int main(int argc, char** argv) try {
   for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(cases.size()); ++i) {
     const Case& c = cases[static_cast<std::size_t>(i)];
     if (known.contains(static_cast<std::size_t>(i))) continue;
-    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() > 60.0 * minutes) continue;
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() > 60.0 * minutes)
+      continue;
     Outcome o;
     try {
       o = outcome_of(c);
@@ -270,8 +273,8 @@ int main(int argc, char** argv) try {
     const std::lock_guard lock(mutex);
     add(all, o);
     add(parts[fmt::format("{} {}", c.kind, c.readings)], o);
-    fmt::print("{} {} {} seed {}: {} {} sigma {:.2f} left {:.4f} ({:.2f} s)\n", o.culprit ? "WRONG" : "ok   ", c.kind,
-               c.readings, c.seed, o.verdict, o.effects, o.sigma_ratio, o.upper, o.seconds);
+    fmt::print("{} {} {} seed {}: {} {} sigma {:.2f} left {:.4f} ({:.2f} s)\n", o.culprit ? "WRONG" : "ok   ",
+               c.kind, c.readings, c.seed, o.verdict, o.effects, o.sigma_ratio, o.upper, o.seconds);
     std::fflush(stdout);
     journal << line_of(c, o).dump() << std::endl;
     write();

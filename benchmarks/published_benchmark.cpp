@@ -75,7 +75,8 @@ nlohmann::json judged(Experiment experiment, int readings, const Choice& choice)
       for (double& one : y) one += choice.sigma * normal(random);
       series[j].law = printed_law(series[j].test.travel, y, choice.digits);
     }
-    const SummaryStatistics found = summary_statistics(Model(series, experiment.solver), all, truth, truth.size());
+    const SummaryStatistics found =
+        summary_statistics(Model(series, experiment.solver), all, truth, truth.size());
     p.push_back(found.p);
     variance += found.scatter * found.scatter / (choice.sigma * choice.sigma) / choice.sets;
   }
@@ -108,7 +109,8 @@ int main(int argc, char** argv) try {
   Experiment experiment = read_experiment(choice.experiment, parameters());
   experiment.solver.elements = 32;  // the same wire makes the readings and is fitted to them
   experiment.solver.extrapolate = false;
-  nlohmann::json result{{"schema", "snare-published/1"}, {"sigma_N", choice.sigma}, {"R2_digits", choice.digits}};
+  nlohmann::json result{
+      {"schema", "snare-published/1"}, {"sigma_N", choice.sigma}, {"R2_digits", choice.digits}};
   for (const int readings : choice.readings) result["parts"].push_back(judged(experiment, readings, choice));
   if (!choice.out.empty()) base::write_text(choice.out, result.dump(1) + "\n");
 } catch (const std::exception& error) {

@@ -31,7 +31,8 @@ int main(int argc, char** argv) try {
   app.add_option("--experiment", file);
   app.add_option("--only", only)->delimiter(',');
   app.add_flag("--coarse", coarse);
-  app.add_option("--replicates", replicates, "of the bootstrap of P of the models that are not out of question");
+  app.add_option("--replicates", replicates,
+                 "of the bootstrap of P of the models that are not out of question");
   app.add_option("--out", out);
   CLI11_PARSE(app, argc, argv);
   const Experiment experiment = read_experiment(file, parameters());
@@ -51,7 +52,8 @@ int main(int argc, char** argv) try {
     if (r.kind != FitRange::Kind::common) fmt::print("{}: {} m\n", to_string(r.kind), fmt::join(r.to, ", "));
   std::vector<Hypothesis> hypotheses = published_hypotheses();
   if (!only.empty())
-    std::erase_if(hypotheses, [&](const Hypothesis& h) { return std::ranges::find(only, h.name) == only.end(); });
+    std::erase_if(hypotheses,
+                  [&](const Hypothesis& h) { return std::ranges::find(only, h.name) == only.end(); });
   const std::vector<HypothesisMap> maps = published_map(experiment, ranges, hypotheses, options);
   std::vector<std::optional<double>> p(maps.size());
   for (std::size_t k = 0; k < maps.size(); ++k) {
@@ -64,9 +66,9 @@ int main(int argc, char** argv) try {
     fmt::print("{:<26} {:9.2f} {:9.2f}  {:.4f} {:.4f}  {} {:.1f} mm, {} readings, p {}, {:.0f} um/N, {}\n",
                one["model"].get<std::string>(), one["log_evidence"][0].get<double>(),
                one["log_evidence"][1].get<double>(), one["probability"][0].get<double>(),
-               one["probability"][1].get<double>(), one["range"].get<std::string>(), one["range_mm"].get<double>(),
-               one["readings"].get<int>(), one["p"].dump(), one["more_compliance_um_N"].get<double>(),
-               one["values"].dump());
+               one["probability"][1].get<double>(), one["range"].get<std::string>(),
+               one["range_mm"].get<double>(), one["readings"].get<int>(), one["p"].dump(),
+               one["more_compliance_um_N"].get<double>(), one["values"].dump());
   const results::PublishedVerdict verdict = results::published_verdict(result);
   fmt::print("{}: {}\n", to_string(verdict.answer), verdict.headline);
   if (!out.empty()) base::write_text(out, result.dump() + "\n");

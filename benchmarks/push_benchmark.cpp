@@ -25,8 +25,8 @@ double iterations_per_point(const coupling::PushCurve& curve) {
   std::vector<int> iterations;
   for (std::size_t i = 1; i < curve.points.size(); ++i) iterations.push_back(curve.points[i].iterations);
   if (iterations.empty()) return 0.0;
-  std::nth_element(iterations.begin(), iterations.begin() + static_cast<std::ptrdiff_t>(iterations.size() / 2),
-                   iterations.end());
+  std::nth_element(iterations.begin(),
+                   iterations.begin() + static_cast<std::ptrdiff_t>(iterations.size() / 2), iterations.end());
   return iterations[iterations.size() / 2];
 }
 
@@ -40,8 +40,8 @@ void report(benchmark::State& state, const coupling::PushCurve& curve, int meshe
   state.counters["force_error"] = error;
   state.counters["newton_iterations"] = iterations;
   state.counters["newton_iterations_per_point_and_mesh"] = iterations_per_point(curve) / meshes;
-  state.counters["seconds_per_newton_iteration"] =
-      benchmark::Counter(iterations, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["seconds_per_newton_iteration"] = benchmark::Counter(
+      iterations, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 /// The whole curve from the straight wire: buckling, first touch, 20 points; three nested meshes, extrapolated.
@@ -107,7 +107,8 @@ void EquilibriumKinsol(benchmark::State& state) {
   const double force = wire::force_tolerance(1e-10, p.bending_stiffness, p.axial_stiffness, length, shortest,
                                              wire.point.border.head<2>().norm());
   Eigen::VectorXd scale = Eigen::VectorXd::Constant(n + m, 1.0 / force);
-  for (const int row : {0, 1, 3}) scale[n + row] = 1.0 / (1e-12 * length);  // positions; row 2: sliding, a force
+  for (const int row : {0, 1, 3})
+    scale[n + row] = 1.0 / (1e-12 * length);  // positions; row 2: sliding, a force
 
   numerics::BorderedSystem bordered;
   Eigen::VectorXd by_parameter;
@@ -155,8 +156,8 @@ void NewtonIteration(benchmark::State& state) {
     newton_iteration(*wire.system, wire.point, workspace);
     benchmark::DoNotOptimize(workspace.band_step.data());
   }
-  state.counters["seconds_per_element"] =
-      benchmark::Counter(elements, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["seconds_per_element"] = benchmark::Counter(
+      elements, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.counters["pivot_ratio"] = workspace.solver.pivot_ratio();
   state.counters["blockwise"] = workspace.solver.blockwise() ? 1 : 0;
   state.SetComplexityN(elements);

@@ -21,7 +21,8 @@ void whole_trace(benchmark::State& state, const char* effect) {
     benchmark::DoNotOptimize(t.final.rmse);
     for (const auto& [what, time] : t.seconds) seconds[what] += time;
   }
-  for (const auto& [what, time] : seconds) state.counters[what] = time / static_cast<double>(state.iterations());
+  for (const auto& [what, time] : seconds)
+    state.counters[what] = time / static_cast<double>(state.iterations());
 }
 
 /// `processor` is the CPU time of all threads [s].
@@ -45,7 +46,8 @@ void long_records(benchmark::State& state, const char* effect, double size) {
 
 /// Six replicates of 500 readings, loading, of which nothing or the strands are missing.
 void replicates(benchmark::State& state, const char* effect, double size) {
-  validation::BlindSet set = validation::make_blind_set(effect, size, 1, {.readings_a_leg = 500, .replicates = 6});
+  validation::BlindSet set =
+      validation::make_blind_set(effect, size, 1, {.readings_a_leg = 500, .replicates = 6});
   set.experiment.series.resize(6);
   for (identification::Series& s : set.experiment.series) {
     identification::Readings& r = *s.readings;
@@ -70,20 +72,32 @@ void force_and_derivatives(benchmark::State& state) {
   for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(model.evaluate({}, by).force.front()[0]);
 }
 
-BENCHMARK_CAPTURE(whole_trace, wire_length, "wire_length")->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
+BENCHMARK_CAPTURE(whole_trace, wire_length, "wire_length")
+    ->Unit(benchmark::kSecond)
+    ->UseRealTime()
+    ->Iterations(1);
 BENCHMARK_CAPTURE(whole_trace, strand_hysteresis, "strand_hysteresis")
     ->Unit(benchmark::kSecond)
     ->UseRealTime()
     ->Iterations(1);
 BENCHMARK_CAPTURE(whole_trace, drift, "drift")->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
-BENCHMARK_CAPTURE(long_records, nothing, "none", 30.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
+BENCHMARK_CAPTURE(long_records, nothing, "none", 30.0)
+    ->Unit(benchmark::kSecond)
+    ->UseRealTime()
+    ->Iterations(1);
 BENCHMARK_CAPTURE(long_records, span, "span", 30.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
 BENCHMARK_CAPTURE(long_records, strand_hysteresis, "strand_hysteresis", 30.0)
     ->Unit(benchmark::kSecond)
     ->UseRealTime()
     ->Iterations(1);
-BENCHMARK_CAPTURE(long_records, mount_slip, "mount_slip", 30.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
-BENCHMARK_CAPTURE(long_records, damage, "damage", 100.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
+BENCHMARK_CAPTURE(long_records, mount_slip, "mount_slip", 30.0)
+    ->Unit(benchmark::kSecond)
+    ->UseRealTime()
+    ->Iterations(1);
+BENCHMARK_CAPTURE(long_records, damage, "damage", 100.0)
+    ->Unit(benchmark::kSecond)
+    ->UseRealTime()
+    ->Iterations(1);
 BENCHMARK_CAPTURE(replicates, nothing, "none", 30.0)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1);
 BENCHMARK_CAPTURE(replicates, strand_hysteresis, "strand_hysteresis", 300.0)
     ->Unit(benchmark::kSecond)

@@ -51,8 +51,9 @@ int main() {
   const double k = coupling::tensioned_stiffness(steel.bending_stiffness(), tension, span, 0.5 * span).value;
   const double m = mass + steel.mass_per_length() * span / 3.0;
   const double lasted = result.events.back().time - result.events.front().time;
-  std::cout << "contact over half a period of mass and spring: " << lasted / (std::numbers::pi * std::sqrt(m / k))
+  std::cout << "contact over half a period of mass and spring: "
+            << lasted / (std::numbers::pi * std::sqrt(m / k)) << '\n'
+            << "impulse over twice the momentum of the body: " << result.impulse[0].y() / (2.0 * mass * speed)
             << '\n'
-            << "impulse over twice the momentum of the body: " << result.impulse[0].y() / (2.0 * mass * speed) << '\n'
             << "energy that the integrator lost: " << -result.energy.integrator << " J\n";
 }

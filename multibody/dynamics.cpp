@@ -49,7 +49,8 @@ double along_axis(const TreeBody& body, const Wrench& f) {
 }
 
 Wrench apply(const ArticulatedInertia& inertia, const Twist& v) {
-  return {inertia.I * v.angular + inertia.H * v.linear, inertia.H.transpose() * v.angular + inertia.M * v.linear};
+  return {inertia.I * v.angular + inertia.H * v.linear,
+          inertia.H.transpose() * v.angular + inertia.M * v.linear};
 }
 
 /// The same inertia seen from the parent. After turning, with P = [p]x: H_P = H + P M, I_P = I - H P + P H_P^T.
@@ -212,7 +213,8 @@ const Eigen::VectorXd& forward_dynamics(const Tree& tree, const Eigen::VectorXd&
     left.I.noalias() -= U.moment * moment.transpose();
     left.H.noalias() -= U.moment * force.transpose();
     left.M.noalias() -= U.force * force.transpose();
-    const Wrench passed = workspace.F_B[at(i)] + apply(left, workspace.bias[at(i)]) + Wrench{u * moment, u * force};
+    const Wrench passed =
+        workspace.F_B[at(i)] + apply(left, workspace.bias[at(i)]) + Wrench{u * moment, u * force};
     const Pose& X = workspace.X_PB[at(i)];
     const ArticulatedInertia felt = to_outer(left, X);
     ArticulatedInertia& parent = workspace.articulated[at(body.parent)];

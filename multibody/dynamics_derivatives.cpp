@@ -36,7 +36,8 @@ Wrench apply(const Matrix6& matrix, const Twist& v) {
 ///   2 B u = V x* (I u) - I (V x u) + u x* (I V)
 Matrix6 quadratic(const SpatialInertia& inertia, const Twist& V) {
   Matrix6 V_cross;
-  V_cross << cross_matrix(V.angular), Eigen::Matrix3d::Zero(), cross_matrix(V.linear), cross_matrix(V.angular);
+  V_cross << cross_matrix(V.angular), Eigen::Matrix3d::Zero(), cross_matrix(V.linear),
+      cross_matrix(V.angular);
   const Matrix6 carried = inertia.matrix() * V_cross;
   const Wrench momentum = inertia * V;
   const Eigen::Matrix3d n = cross_matrix(momentum.moment), f = cross_matrix(momentum.force);
@@ -139,8 +140,10 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
           const Twist T_psi = cross(V_below, T);
           const Twist T_psi_rate = cross(A_below, T) + cross(V_below, T_psi);
           const Twist T_rate = cross(d.V_W[at(j)], T);
-          d.position(column, bearer.v_index + l) = row_quadratic.dot(T_psi.vector()) + dot(S, inertia * T_psi_rate);
-          d.velocity(column, bearer.v_index + l) = row_quadratic.dot(T.vector()) + dot(S, inertia * (T_psi + T_rate));
+          d.position(column, bearer.v_index + l) =
+              row_quadratic.dot(T_psi.vector()) + dot(S, inertia * T_psi_rate);
+          d.velocity(column, bearer.v_index + l) =
+              row_quadratic.dot(T.vector()) + dot(S, inertia * (T_psi + T_rate));
         }
       }
     }

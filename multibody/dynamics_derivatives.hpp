@@ -37,7 +37,8 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
 /// Derivatives of the momentum about the world's origin, in its axes (angular over linear), (6 x nv).    theory.md
 /// (A.8)
 struct MomentumDerivatives {
-  Eigen::Matrix<double, 6, Eigen::Dynamic> position;  ///< along velocities: joints turn and shift in their own frames
+  Eigen::Matrix<double, 6, Eigen::Dynamic>
+      position;  ///< along velocities: joints turn and shift in their own frames
   Eigen::Matrix<double, 6, Eigen::Dynamic> velocity;
 };
 /// From what `differentiate_inverse_dynamics` left in its storage.
@@ -50,14 +51,16 @@ struct MomentumDerivatives {
 /// Entries [-], of a free joint's turn by its quaternion [rad].
 [[nodiscard]] Eigen::MatrixXd coordinate_motion(const Tree& tree, const Eigen::VectorXd& q);
 /// The block of one body on a free joint, rows turn [rad] and shift [m], columns place and quaternion.
-[[nodiscard]] Eigen::Matrix<double, 6, 7> free_coordinate_motion(const TreeBody& body, const Eigen::VectorXd& q);
+[[nodiscard]] Eigen::Matrix<double, 6, 7> free_coordinate_motion(const TreeBody& body,
+                                                                 const Eigen::VectorXd& q);
 
 /// Derivatives of `free_coordinate_rate`, rows p' [m/s] and quat' [1/s].
 struct FreeRateDerivatives {
   Eigen::Matrix<double, 7, 7> by_coordinates;
   Eigen::Matrix<double, 7, 6> by_velocities;
 };
-[[nodiscard]] FreeRateDerivatives differentiate_free_coordinate_rate(const TreeBody& body, const Eigen::VectorXd& q,
+[[nodiscard]] FreeRateDerivatives differentiate_free_coordinate_rate(const TreeBody& body,
+                                                                     const Eigen::VectorXd& q,
                                                                      const Eigen::VectorXd& v);
 
 }  // namespace snare::multibody

@@ -56,7 +56,8 @@ class Seeker {
       place(tree_, q, kinematics_);
       const Matrix6X all = frame_jacobian(tree_, kinematics_, frame_);
       Matrix6X J(6, n);
-      for (Index j = 0; j < n; ++j) J.col(j) = all.col(tree_.body(joints_[at(static_cast<int>(j))].body).v_index);
+      for (Index j = 0; j < n; ++j)
+        J.col(j) = all.col(tree_.body(joints_[at(static_cast<int>(j))].body).v_index);
       J.bottomRows<3>() /= size_;
       const Eigen::MatrixXd normal = J.transpose() * J + damping * damping * Eigen::MatrixXd::Identity(n, n);
       const VectorXd step = numerics::solve_symmetric(normal, J.transpose() * e);
@@ -176,7 +177,8 @@ Reach reach_pose(const Tree& tree, int frame, const Pose& X_WF, const VectorXd& 
       }
       continue;
     }
-    if (std::ranges::any_of(known, [&](const VectorXd& other) { return (other - q).cwiseAbs().maxCoeff() < same; }))
+    if (std::ranges::any_of(known,
+                            [&](const VectorXd& other) { return (other - q).cwiseAbs().maxCoeff() < same; }))
       continue;
     known.push_back(q);
     if (way < nearest) {

@@ -37,7 +37,8 @@ void for_axes(const Tree& tree, const Kinematics& kinematics, int body, const Ea
 
 }  // namespace
 
-Kinematics::Kinematics(const Tree& tree) : X_PB(at(tree.size())), X_WB(at(tree.size())), V_B(at(tree.size())) {}
+Kinematics::Kinematics(const Tree& tree)
+    : X_PB(at(tree.size())), X_WB(at(tree.size())), V_B(at(tree.size())) {}
 
 void place(const Tree& tree, const Eigen::VectorXd& q, Kinematics& kinematics) {
   assert(q.size() == tree.coordinates());
@@ -72,17 +73,20 @@ FrameMotion frame_motion(const Tree& tree, const Kinematics& kinematics, int fra
   return {R * V.angular, R * (V.linear + V.angular.cross(f.X_BF.p))};
 }
 
-Matrix6X point_jacobian(const Tree& tree, const Kinematics& kinematics, int body, const Eigen::Vector3d& p_W) {
+Matrix6X point_jacobian(const Tree& tree, const Kinematics& kinematics, int body,
+                        const Eigen::Vector3d& p_W) {
   Matrix6X J = Matrix6X::Zero(6, tree.velocities());
-  for_axes(tree, kinematics, body,
-           [&](int column, int, const Twist& S) { J.col(column) << S.angular, S.linear + S.angular.cross(p_W); });
+  for_axes(tree, kinematics, body, [&](int column, int, const Twist& S) {
+    J.col(column) << S.angular, S.linear + S.angular.cross(p_W);
+  });
   return J;
 }
 
-void add_force(const Tree& tree, const Kinematics& kinematics, int body, const Eigen::Vector3d& p_W, const Wrench& F_W,
-               Eigen::Ref<Eigen::VectorXd> forces) {
+void add_force(const Tree& tree, const Kinematics& kinematics, int body, const Eigen::Vector3d& p_W,
+               const Wrench& F_W, Eigen::Ref<Eigen::VectorXd> forces) {
   const Wrench about_origin{F_W.moment + p_W.cross(F_W.force), F_W.force};
-  for_axes(tree, kinematics, body, [&](int column, int, const Twist& S) { forces[column] += dot(S, about_origin); });
+  for_axes(tree, kinematics, body,
+           [&](int column, int, const Twist& S) { forces[column] += dot(S, about_origin); });
 }
 
 Matrix6X frame_jacobian(const Tree& tree, const Kinematics& kinematics, int frame) {
@@ -144,7 +148,8 @@ BodyWrench wrench_on_frame(const Tree& tree, int frame, const Wrench& F_F) {
   return {f.body, f.X_BF.to_outer(F_F)};
 }
 
-BodyWrench world_wrench_on_frame(const Tree& tree, const Kinematics& kinematics, int frame, const Wrench& F_W) {
+BodyWrench world_wrench_on_frame(const Tree& tree, const Kinematics& kinematics, int frame,
+                                 const Wrench& F_W) {
   const Eigen::Matrix3d R = frame_pose(tree, kinematics, frame).R;
   return wrench_on_frame(tree, frame, {R.transpose() * F_W.moment, R.transpose() * F_W.force});
 }

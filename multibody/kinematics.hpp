@@ -55,8 +55,8 @@ struct FrameMotion {
 /// each velocity [-, m].                                                                             theory.md (A.4)
 [[nodiscard]] Matrix6X frame_jacobian(const Tree& tree, const Kinematics& kinematics, int frame);
 /// J^T F of a wrench about a point p_W [m] of a body, in the axes of the world [N m, N]: added to forces (nv).
-void add_force(const Tree& tree, const Kinematics& kinematics, int body, const Eigen::Vector3d& p_W, const Wrench& F_W,
-               Eigen::Ref<Eigen::VectorXd> forces);
+void add_force(const Tree& tree, const Kinematics& kinematics, int body, const Eigen::Vector3d& p_W,
+               const Wrench& F_W, Eigen::Ref<Eigen::VectorXd> forces);
 /// The Jacobian of a point p_W [m] of a body.
 [[nodiscard]] Matrix6X point_jacobian(const Tree& tree, const Kinematics& kinematics, int body,
                                       const Eigen::Vector3d& p_W);

@@ -7,8 +7,9 @@ namespace snare::multibody {
 
 /// Constants of a rigid body, in its own frame B at its centre of mass.
 struct RigidBodyProperties {
-  double mass = 1.0;                                      ///< [kg], > 0
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< about the centre of mass [kg m^2], positive definite
+  double mass = 1.0;  ///< [kg], > 0
+  Eigen::Matrix3d inertia =
+      Eigen::Matrix3d::Identity();  ///< about the centre of mass [kg m^2], positive definite
 };
 
 /// Where a body is and how it moves, in the world frame W.
@@ -27,7 +28,8 @@ struct RigidBodyState {
 [[nodiscard]] Eigen::Matrix3d rotation(const Eigen::Vector4d& q);
 
 /// Derivative of R(q) a by q for a fixed a, of unit or nearly unit q; in the unit of a.
-[[nodiscard]] Eigen::Matrix<double, 3, 4> rotated_by_quaternion(const Eigen::Vector4d& q, const Eigen::Vector3d& a);
+[[nodiscard]] Eigen::Matrix<double, 3, 4> rotated_by_quaternion(const Eigen::Vector4d& q,
+                                                                const Eigen::Vector3d& a);
 
 /// Kinetic energy [J], and angular momentum about the world's origin [kg m^2/s].
 [[nodiscard]] double kinetic_energy(const RigidBodyProperties& body, const RigidBodyState& state);

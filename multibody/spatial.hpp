@@ -110,7 +110,8 @@ struct SpatialInertia {
                                                    const Eigen::Matrix3d& inertia);
   /// Momentum of the motion v, or the wrench that gives the acceleration v at rest.
   [[nodiscard]] Wrench operator*(const Twist& v) const {
-    return {rotational * v.angular + first_moment.cross(v.linear), mass * v.linear - first_moment.cross(v.angular)};
+    return {rotational * v.angular + first_moment.cross(v.linear),
+            mass * v.linear - first_moment.cross(v.angular)};
   }
   /// The same body seen from A, this being seen from B.
   [[nodiscard]] SpatialInertia to_outer(const Pose& X_AB) const;

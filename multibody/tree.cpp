@@ -10,7 +10,9 @@ namespace {
 
 /// R of the quaternion w, x, y, z over its norm.
 Eigen::Matrix3d rotation(const Eigen::VectorXd& q, int first) {
-  return Eigen::Quaterniond(q[first], q[first + 1], q[first + 2], q[first + 3]).normalized().toRotationMatrix();
+  return Eigen::Quaterniond(q[first], q[first + 1], q[first + 2], q[first + 3])
+      .normalized()
+      .toRotationMatrix();
 }
 
 /// Rodrigues' formula about a unit axis.
@@ -29,8 +31,8 @@ Tree::Tree() {
   frames_.push_back({"world", -1, {}});
 }
 
-int Tree::add_moving(int frame, const std::string& name, JointKind joint, const Eigen::Vector3d& axis, const Pose& X_FJ,
-                     const SpatialInertia& inertia) {
+int Tree::add_moving(int frame, const std::string& name, JointKind joint, const Eigen::Vector3d& axis,
+                     const Pose& X_FJ, const SpatialInertia& inertia) {
   if (find_frame(name) >= 0) throw std::invalid_argument("the name " + name + " is taken");
   TreeBody body;
   body.name = name;

@@ -52,8 +52,8 @@ class Tree {
 
   /// Adds a body on a joint whose frame has the pose X_FJ in an existing frame; the axis is made a unit vector. Returns
   /// the index of the body's frame. Throws std::invalid_argument for a name that is taken, or no axis.
-  int add_moving(int frame, const std::string& name, JointKind joint, const Eigen::Vector3d& axis, const Pose& X_FJ,
-                 const SpatialInertia& inertia);
+  int add_moving(int frame, const std::string& name, JointKind joint, const Eigen::Vector3d& axis,
+                 const Pose& X_FJ, const SpatialInertia& inertia);
   /// Adds a body that is fixed in an existing frame; returns the index of its own frame. On the world its mass is
   /// nothing.
   int add_fixed(int frame, const std::string& name, const Pose& X_FB, const SpatialInertia& inertia = {});

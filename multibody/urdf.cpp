@@ -149,10 +149,10 @@ std::vector<std::string> doubts(const RobotDescription& robot) {
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.inertia.about_own_centre()).eigenvalues();
     const double gyration = std::sqrt(moments[2] / link.inertia.mass);
     if (gyration <= reach) continue;
-    found.push_back(
-        fmt::format("link {}: its radius of gyration of {:.4g} m is larger than the robot's reach of {:.4g} m: is the "
-                    "inertia in kg mm2? URDF is in kg m2",
-                    link.name, gyration, reach));
+    found.push_back(fmt::format(
+        "link {}: its radius of gyration of {:.4g} m is larger than the robot's reach of {:.4g} m: is the "
+        "inertia in kg mm2? URDF is in kg m2",
+        link.name, gyration, reach));
   }
   constexpr double turn = 2.0 * EIGEN_PI;
   for (const RobotJoint& joint : robot.joints) {
@@ -160,9 +160,10 @@ std::vector<std::string> doubts(const RobotDescription& robot) {
     const double lowest = std::isfinite(joint.lower) ? joint.lower : 0.0;
     const double highest = std::isfinite(joint.upper) ? joint.upper : 0.0;
     if (lowest >= -turn - 1e-3 && highest <= turn + 1e-3) continue;  // 1e-3: 6.283 is written as 6.2832
-    found.push_back(fmt::format(
-        "joint {}: its limits of {:.6g} to {:.6g} rad are more than a turn: are they in degrees? URDF is in radians",
-        joint.name, joint.lower, joint.upper));
+    found.push_back(
+        fmt::format("joint {}: its limits of {:.6g} to {:.6g} rad are more than a turn: are they in degrees? "
+                    "URDF is in radians",
+                    joint.name, joint.lower, joint.upper));
   }
   return found;
 }

@@ -60,9 +60,11 @@ class Checker {
       return std::move(problems_);
     }
     static_cast<void>(name_of(*robot, "robot"));
-    for (const TiXmlElement* e = robot->FirstChildElement("link"); e != nullptr; e = e->NextSiblingElement("link"))
+    for (const TiXmlElement* e = robot->FirstChildElement("link"); e != nullptr;
+         e = e->NextSiblingElement("link"))
       link(*e);
-    for (const TiXmlElement* e = robot->FirstChildElement("joint"); e != nullptr; e = e->NextSiblingElement("joint"))
+    for (const TiXmlElement* e = robot->FirstChildElement("joint"); e != nullptr;
+         e = e->NextSiblingElement("joint"))
       joint(*e);
     if (links_.empty()) add(robot->Row(), "robot", "", "must have at least one <link>");
     if (links_.size() > most_links) {
@@ -137,7 +139,8 @@ class Checker {
     for (const TiXmlAttribute* a = e.FirstAttribute(); a != nullptr; a = a->Next())
       if (a->ValueStr().find("${") != std::string::npos || a->ValueStr().find("$(") != std::string::npos)
         return e.Row();
-    for (const TiXmlElement* child = e.FirstChildElement(); child != nullptr; child = child->NextSiblingElement())
+    for (const TiXmlElement* child = e.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement())
       if (const int line = line_of_macro(*child); line > 0) return line;
     return 0;
   }
@@ -152,7 +155,8 @@ class Checker {
   }
 
   /// Numbers of an attribute; none after a problem.
-  std::vector<double> numbers(const TiXmlElement& e, const char* attribute, const std::string& key, std::size_t count) {
+  std::vector<double> numbers(const TiXmlElement& e, const char* attribute, const std::string& key,
+                              std::size_t count) {
     const char* written = e.Attribute(attribute);
     const std::string wanted = count == 1 ? "must be a number" : fmt::format("must be {} numbers", count);
     if (written == nullptr) {
@@ -243,7 +247,8 @@ class Checker {
       add(e.Row(), key, value, "must be positive definite");
     } else if (principal[2] >
                (principal[0] + principal[1]) * (1.0 + 1e-6)) {  // a flat body is the limit; files are rounded
-      add(e.Row(), key, value, "must satisfy the triangle inequality: none larger than the sum of the others");
+      add(e.Row(), key, value,
+          "must satisfy the triangle inequality: none larger than the sum of the others");
     } else if (mass > 0.0) {
       const double gyration = std::sqrt(principal[2] / mass);
       if (gyration < smallest_gyration || gyration > largest_gyration) {
@@ -259,7 +264,8 @@ class Checker {
     ends.line = e.Row();
     const std::string key = "joint[" + ends.name + "]";
     if (!ends.name.empty() && !joint_lines_.emplace(ends.name, e.Row()).second) {
-      add(e.Row(), key, "", fmt::format("must not be given twice; the first is in line {}", joint_lines_[ends.name]));
+      add(e.Row(), key, "",
+          fmt::format("must not be given twice; the first is in line {}", joint_lines_[ends.name]));
     }
     const std::string type = e.Attribute("type") == nullptr ? "" : e.Attribute("type");
     static const std::set<std::string> types{"revolute", "continuous", "prismatic", "fixed", "floating"};
@@ -268,7 +274,8 @@ class Checker {
           "must be revolute, continuous, prismatic, fixed or floating");
     }
     if (e.FirstChildElement("mimic") != nullptr) {
-      add(e.FirstChildElement("mimic")->Row(), key + ".mimic", "", "is not supported: every joint moves by itself");
+      add(e.FirstChildElement("mimic")->Row(), key + ".mimic", "",
+          "is not supported: every joint moves by itself");
     }
     origin(e, key);
     ends.parent = end(e, "parent", key);
@@ -304,7 +311,8 @@ class Checker {
     }
     double lower = 0.0, upper = 0.0;
     for (const char* attribute : {"lower", "upper", "effort", "velocity"}) {
-      const bool required = std::string_view(attribute) == "effort" || std::string_view(attribute) == "velocity";
+      const bool required =
+          std::string_view(attribute) == "effort" || std::string_view(attribute) == "velocity";
       if (!required && limit->Attribute(attribute) == nullptr) continue;
       const std::vector<double> value = numbers(*limit, attribute, key + ".limit." + attribute, 1);
       if (value.empty()) continue;

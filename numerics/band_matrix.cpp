@@ -103,8 +103,8 @@ namespace {
 /// Substitutes forth and back in `width` right-hand sides at once, row by row, entry by entry side by side. The row that is known last comes
 /// last, so that little waits for it. Every one has the operations of one alone, in their order. B: the half bandwidth; 0: that of the matrix.
 template <int B, int width>
-void substitute(const SymmetricBandMatrix& l, const std::vector<double>& inverse, double* first, Eigen::Index stride,
-                std::vector<double>& work) {
+void substitute(const SymmetricBandMatrix& l, const std::vector<double>& inverse, double* first,
+                Eigen::Index stride, std::vector<double>& work) {
   using Entries = std::array<double, width>;
   const int n = l.order();
   const int b = B > 0 ? B : l.half_bandwidth();
@@ -152,7 +152,8 @@ void substitute(const SymmetricBandMatrix& l, const std::vector<double>& inverse
 }
 
 template <int B>
-void substitute_all(const SymmetricBandMatrix& l, const std::vector<double>& inverse, Eigen::Ref<Eigen::MatrixXd>& x) {
+void substitute_all(const SymmetricBandMatrix& l, const std::vector<double>& inverse,
+                    Eigen::Ref<Eigen::MatrixXd>& x) {
   thread_local std::vector<double> work;
   Eigen::Index at = 0;
   const Eigen::Index stride = x.outerStride();

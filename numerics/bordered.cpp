@@ -137,7 +137,8 @@ bool BorderedSolver::factorize_blocks(const BorderedSystem& system) {
   return inverse_.allFinite();
 }
 
-void BorderedSolver::solve(const BorderedSystem& system, Eigen::VectorXd& band, Eigen::VectorXd& border) const {
+void BorderedSolver::solve(const BorderedSystem& system, Eigen::VectorXd& band,
+                           Eigen::VectorXd& border) const {
   if (whole_) {
     Eigen::VectorXd all(band.size() + border.size());
     all << band, border;

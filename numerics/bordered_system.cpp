@@ -21,7 +21,8 @@ SparseMatrix to_sparse(const BorderedSystem& system) {
       if ((*values)[i] != 0.0) triplets.push_back({i, n + border, (*values)[i]});
     }
   }
-  for (const BorderedSystem::Entry& entry : system.rows) triplets.push_back({n + entry.row, entry.column, entry.value});
+  for (const BorderedSystem::Entry& entry : system.rows)
+    triplets.push_back({n + entry.row, entry.column, entry.value});
   for (int i = 0; i < m; ++i) {
     for (int j = 0; j < m; ++j) {
       if (system.corner(i, j) != 0.0) triplets.push_back({n + i, n + j, system.corner(i, j)});

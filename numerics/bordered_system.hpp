@@ -31,13 +31,14 @@ class BorderedSystem {
     int border;  ///< border unknown j: the force on it
   };
 
-  SymmetricBandMatrix matrix;                                   ///< K
-  Eigen::VectorXd band_residual;                                ///< r_q (n)
-  Eigen::VectorXd border_residual;                              ///< r_b (m)
-  Eigen::MatrixXd corner;                                       ///< E (m x m)
-  std::vector<Entry> rows;                                      ///< D
-  std::vector<Anchor> anchors;                                  ///< columns of C that are -e_i
-  std::vector<std::pair<int, const Eigen::VectorXd*>> columns;  ///< dense columns of C: border unknown, values
+  SymmetricBandMatrix matrix;       ///< K
+  Eigen::VectorXd band_residual;    ///< r_q (n)
+  Eigen::VectorXd border_residual;  ///< r_b (m)
+  Eigen::MatrixXd corner;           ///< E (m x m)
+  std::vector<Entry> rows;          ///< D
+  std::vector<Anchor> anchors;      ///< columns of C that are -e_i
+  std::vector<std::pair<int, const Eigen::VectorXd*>>
+      columns;  ///< dense columns of C: border unknown, values
 
   /// Clears residuals and structure for m border unknowns; K is left to the caller.
   void reset(int n, int m);

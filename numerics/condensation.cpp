@@ -29,7 +29,8 @@ Condensation::Condensation(const SparseMatrix& pattern, const std::vector<std::p
   std::vector<int> row_index(at(n), -1), column_index(at(n), -1);
   for (int u = 0; u < n; ++u) {
     if (pair_of_[at(u)] >= 0) continue;
-    const int diagonal = pattern.slot(u, u), in_column = pattern.column_start[at(u) + 1] - pattern.column_start[at(u)];
+    const int diagonal = pattern.slot(u, u),
+              in_column = pattern.column_start[at(u) + 1] - pattern.column_start[at(u)];
     if (!pairs_.empty() && diagonal >= 0 && entries[at(u)] == 1 && in_column == 1) {
       alone_.push_back(u);
       alone_slot_.push_back(diagonal);
@@ -64,7 +65,8 @@ Condensation::Condensation(const SparseMatrix& pattern, const std::vector<std::p
     for (int s = pattern.column_start[at(v)]; s < pattern.column_start[at(v) + 1]; ++s) {
       const int row = row_index[at(pattern.row[at(s)])];
       if (row < 0) continue;
-      const bool goes_on = rates_.size() > first_rate_.back() && rates_.back().slot + rates_.back().length == s &&
+      const bool goes_on = rates_.size() > first_rate_.back() &&
+                           rates_.back().slot + rates_.back().length == s &&
                            rates_.back().row + rates_.back().length == row;
       if (goes_on)
         ++rates_.back().length;
@@ -97,11 +99,13 @@ bool Condensation::update(const SparseMatrix& full) {
 }
 
 // A_iv v = A_iv r/b + A_iv (-a/b) x: the first goes to the right.
-void Condensation::reduce(const SparseMatrix& full, Eigen::Ref<const Eigen::VectorXd> b, Eigen::VectorXd& reduced) {
+void Condensation::reduce(const SparseMatrix& full, Eigen::Ref<const Eigen::VectorXd> b,
+                          Eigen::VectorXd& reduced) {
   const auto left = static_cast<Eigen::Index>(row_.size());
   reduced.resize(left);
   for (Eigen::Index k = 0; k < left; ++k) reduced[k] = b[row_[static_cast<std::size_t>(k)]];
-  for (std::size_t k = 0; k < alone_.size(); ++k) of_alone_[k] = b[alone_[k]] / full.value[at(alone_slot_[k])];
+  for (std::size_t k = 0; k < alone_.size(); ++k)
+    of_alone_[k] = b[alone_[k]] / full.value[at(alone_slot_[k])];
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     given_[k] = b[pairs_[k].first] / pivot_[k];
     if (given_[k] == 0.0) continue;
@@ -116,7 +120,8 @@ void Condensation::reduce(const SparseMatrix& full, Eigen::Ref<const Eigen::Vect
 void Condensation::expand(const Eigen::VectorXd& reduced, Eigen::Ref<Eigen::VectorXd> x) const {
   for (Eigen::Index k = 0; k < reduced.size(); ++k) x[column_[static_cast<std::size_t>(k)]] = reduced[k];
   for (std::size_t k = 0; k < alone_.size(); ++k) x[alone_[k]] = of_alone_[k];
-  for (std::size_t k = 0; k < pairs_.size(); ++k) x[pairs_[k].second] = given_[k] + ratio_[k] * x[pairs_[k].first];
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    x[pairs_[k].second] = given_[k] + ratio_[k] * x[pairs_[k].first];
 }
 
 }  // namespace snare::numerics

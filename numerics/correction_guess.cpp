@@ -36,7 +36,9 @@ void CorrectionGuess::begin(long accepted, double before, double time, int order
 
 void CorrectionGuess::end(const Eigen::Ref<const Eigen::VectorXd>& correction,
                           const Eigen::Ref<const Eigen::VectorXd>& weight) {
-  const auto size = [&weight](const auto& v) { return v.cwiseProduct(weight).template lpNorm<Eigen::Infinity>(); };
+  const auto size = [&weight](const auto& v) {
+    return v.cwiseProduct(weight).template lpNorm<Eigen::Infinity>();
+  };
   if (has_guess_) trusted_ = size(correction - guess_) < size(correction);
   next_.order = order_;
   if (order_ >= 0) next_.value = correction / product_;

@@ -19,7 +19,8 @@ class CorrectionGuess {
   /// Sets the guess, zero where there is none: after a change of the order, or where the last one was no better than none.
   void begin(long accepted, double before, double time, int order, Eigen::Ref<Eigen::VectorXd> correction);
   /// What the step needed, of any unit; weight: one over the tolerance of every unknown, in its unit.
-  void end(const Eigen::Ref<const Eigen::VectorXd>& correction, const Eigen::Ref<const Eigen::VectorXd>& weight);
+  void end(const Eigen::Ref<const Eigen::VectorXd>& correction,
+           const Eigen::Ref<const Eigen::VectorXd>& weight);
 
  private:
   static constexpr int most = 6;  // states that a step of order five sees

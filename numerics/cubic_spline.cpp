@@ -84,14 +84,16 @@ Eigen::MatrixXd slopes_of(const std::vector<double>& knots, const Eigen::MatrixX
   if (n == 1) return Eigen::MatrixXd::Zero(size, values.cols());
   if (n <= 3) {
     Eigen::MatrixXd by = Eigen::MatrixXd::Zero(size, size);
-    for (std::size_t i = 0; i < n; ++i) lagrange_derivative(knots, 0, n, knots[i], by, static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < n; ++i)
+      lagrange_derivative(knots, 0, n, knots[i], by, static_cast<Eigen::Index>(i));
     if (upper == SplineEnd::level) by.row(size - 1).setZero();
     return by * values;
   }
   const SplineEquations equations = spline_equations(knots, upper);
   const Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(equations.left);
   if (factor.info() !=
-      Eigen::Success)  // knots that roundings do not tell from each other; solving would read what is not there
+      Eigen::
+          Success)  // knots that roundings do not tell from each other; solving would read what is not there
     throw std::domain_error(
         fmt::format("a spline's {} knots from {} to {} lie too close", n, knots.front(), knots.back()));
   return factor.solve(Eigen::MatrixXd(equations.right * values));
@@ -110,15 +112,16 @@ HermiteCurve::HermiteCurve(std::vector<double> knots, std::vector<double> values
   area_.assign(knots_.size(), 0.0);
   for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
     const double h = knots_[i + 1] - knots_[i];
-    area_[i + 1] = area_[i] + h * (0.5 * (values_[i] + values_[i + 1]) + h / 12.0 * (slopes_[i] - slopes_[i + 1]));
+    area_[i + 1] =
+        area_[i] + h * (0.5 * (values_[i] + values_[i + 1]) + h / 12.0 * (slopes_[i] - slopes_[i + 1]));
   }
 }
 
 HermiteCurve::HermiteCurve(std::vector<double> knots, std::vector<double> values)
     : HermiteCurve(knots, values, [&] {
-        const Eigen::VectorXd m =
-            slopes_of(knots, Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())),
-                      SplineEnd::not_a_knot);
+        const Eigen::VectorXd m = slopes_of(
+            knots, Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())),
+            SplineEnd::not_a_knot);
         return std::vector<double>(m.begin(), m.end());
       }()) {}
 
@@ -155,9 +158,9 @@ double HermiteCurve::integral(double x) const noexcept {
   const double t2 = t * t;
   const double t3 = t2 * t;
   const double t4 = t2 * t2;
-  return area_[i] +
-         h * ((t - t3 + 0.5 * t4) * values_[i] + (t3 - 0.5 * t4) * values_[i + 1] +
-              h * ((0.5 * t2 - 2.0 / 3.0 * t3 + 0.25 * t4) * slopes_[i] + (0.25 * t4 - t3 / 3.0) * slopes_[i + 1]));
+  return area_[i] + h * ((t - t3 + 0.5 * t4) * values_[i] + (t3 - 0.5 * t4) * values_[i + 1] +
+                         h * ((0.5 * t2 - 2.0 / 3.0 * t3 + 0.25 * t4) * slopes_[i] +
+                              (0.25 * t4 - t3 / 3.0) * slopes_[i + 1]));
 }
 
 std::vector<double> monotone_slopes(const std::vector<double>& knots, const std::vector<double>& values,

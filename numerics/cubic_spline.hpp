@@ -15,7 +15,8 @@ enum class SplineEnd {
 
 /// Matrix D with which the slopes of the interpolating C2 cubic spline at its knots are D v.      theory.md (R.3)
 /// knots: strictly ascending, >= 1 of them; one knot has slope 0, two a straight line, three a parabola. Of any unit.
-[[nodiscard]] Eigen::MatrixXd spline_slopes(const std::vector<double>& knots, SplineEnd upper = SplineEnd::not_a_knot);
+[[nodiscard]] Eigen::MatrixXd spline_slopes(const std::vector<double>& knots,
+                                            SplineEnd upper = SplineEnd::not_a_knot);
 
 /// The cell [knots[i], knots[i+1]] that holds x, or the first or last where x is outside. One knot: 0. All of any unit.
 [[nodiscard]] inline std::size_t find_cell(const double* knots, std::size_t count, double x) noexcept {
@@ -53,7 +54,8 @@ class HermiteCurve {
 
 /// Slopes held to [0, 3 secants] where the values ascend, so that the cubic through them ascends too (Fritsch and
 /// Carlson 1980); those at turns of the values become 0; elsewhere unchanged where they cannot overshoot. Of any unit.
-[[nodiscard]] std::vector<double> monotone_slopes(const std::vector<double>& knots, const std::vector<double>& values,
+[[nodiscard]] std::vector<double> monotone_slopes(const std::vector<double>& knots,
+                                                  const std::vector<double>& values,
                                                   std::vector<double> slopes);
 
 }  // namespace snare::numerics

@@ -110,7 +110,8 @@ void DaeSystem::accept(const DaePoint& at) {
 }
 
 double take(std::span<const double>& memory) {
-  if (memory.empty()) throw base::InputError({"", 0, "state", "", "must be that of the same motion: it is too short"});
+  if (memory.empty())
+    throw base::InputError({"", 0, "state", "", "must be that of the same motion: it is too short"});
   const double first = memory.front();
   memory = memory.subspan(1);
   return first;
@@ -124,7 +125,8 @@ std::vector<double> DaeSystem::memory() const {
 
 void DaeSystem::restore_state(const VectorView& y, std::span<const double> memory) {
   for (DaePart* part : parts_) part->restore_state(y, memory);
-  if (!memory.empty()) throw base::InputError({"", 0, "state", "", "must be that of the same motion: it is too long"});
+  if (!memory.empty())
+    throw base::InputError({"", 0, "state", "", "must be that of the same motion: it is too long"});
   stale_pattern_ = true;
 }
 

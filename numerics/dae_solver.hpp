@@ -21,7 +21,9 @@ class DaeSolver {
   DaeSolver(const SparseMatrix& pattern, const std::vector<std::pair<int, int>>& pairs);
 
   /// The pairs that are condensed: see Condensation.
-  [[nodiscard]] const std::vector<std::pair<int, int>>& pairs() const noexcept { return condensation_.pairs(); }
+  [[nodiscard]] const std::vector<std::pair<int, int>>& pairs() const noexcept {
+    return condensation_.pairs();
+  }
   /// False when the matrix is singular. Throws LibraryError when memory runs out.
   [[nodiscard]] bool factorize(const SparseMatrix& matrix);
   /// Solves A x = b in place; `matrix` is that of the last factorisation. False when it is singular after all.

@@ -29,7 +29,8 @@ ThinSvd thin_svd(const Eigen::MatrixXd& a) {
 
 Eigen::MatrixXd solve_by_lu(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   // What is not a number has no pivot, which Eigen does not check.
-  if (!a.allFinite()) return Eigen::MatrixXd::Constant(b.rows(), b.cols(), std::numeric_limits<double>::quiet_NaN());
+  if (!a.allFinite())
+    return Eigen::MatrixXd::Constant(b.rows(), b.cols(), std::numeric_limits<double>::quiet_NaN());
   return a.partialPivLu().solve(b);
 }
 

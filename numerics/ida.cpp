@@ -90,9 +90,10 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
       matrix(made(SUNSparseMatrix(system.size(), system.size(), 1, CSC_MAT, context), "SUNSparseMatrix")),
       linear(make_linear_solver(callbacks, context)),
       ida(made(IDACreate(context), "IDACreate")),
-      newton(options.newton_test == NewtonTest::every_unknown
-                 ? make_newton_solver(callbacks, y_view.get(), options.renewals, context)
-                 : SunNonlinearSolver(made(SUNNonlinSol_Newton(y_view.get(), context), "SUNNonlinSol_Newton"))),
+      newton(
+          options.newton_test == NewtonTest::every_unknown
+              ? make_newton_solver(callbacks, y_view.get(), options.renewals, context)
+              : SunNonlinearSolver(made(SUNNonlinSol_Newton(y_view.get(), context), "SUNNonlinSol_Newton"))),
       events(static_cast<std::size_t>(system.event_count()), 0) {
   // IDA bounds the mean over all unknowns of (error/tolerance)^2. So that a body's three velocities are not lost among a
   // wire's hundreds, the mean is made one over blocks: an unknown counts as one over the size of its block.
@@ -109,7 +110,8 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
   callbacks.relative = Eigen::VectorXd::Zero(system.size());
   callbacks.scale = Eigen::VectorXd::Ones(system.size());
   for (const DaeBlock& block : system.layout().blocks()) {
-    if (block.relative) callbacks.relative.segment(block.first, block.count).setConstant(options.relative_tolerance);
+    if (block.relative)
+      callbacks.relative.segment(block.first, block.count).setConstant(options.relative_tolerance);
     if (block.kind == DaeKind::differential || options.test_algebraic) {
       callbacks.scale.segment(block.first, block.count)
           .setConstant(std::sqrt(static_cast<double>(block.count) * blocks / tested));
@@ -185,13 +187,14 @@ std::vector<std::string> Ida::Memory::worst_unknowns() {
   double t = 0.0;
   double c = 0.0;
   void* user = nullptr;
-  if (IDAGetNonlinearSystemData(ida.get(), &t, &predicted, &predicted_rate, &current, &current_rate, &rows, &c,
-                                &user) != IDA_SUCCESS ||
+  if (IDAGetNonlinearSystemData(ida.get(), &t, &predicted, &predicted_rate, &current, &current_rate, &rows,
+                                &c, &user) != IDA_SUCCESS ||
       predicted == nullptr || current == nullptr) {
     return {};
   }
   Eigen::VectorXd size = (map(current) - map(predicted)).cwiseAbs();
-  size.array() /= callbacks.scale.array() * (callbacks.relative.array() * y.array().abs() + tolerance.array());
+  size.array() /=
+      callbacks.scale.array() * (callbacks.relative.array() * y.array().abs() + tolerance.array());
   if (rows != nullptr) {
     for (Eigen::Index i = 0; i < size.size(); ++i) {
       if (!std::isfinite(map(rows)[i])) size[i] = std::numeric_limits<double>::infinity();
@@ -203,7 +206,8 @@ std::vector<std::string> Ida::Memory::worst_unknowns() {
   std::vector<int> order(static_cast<std::size_t>(size.size()));
   std::iota(order.begin(), order.end(), 0);
   const auto shown = std::min<std::ptrdiff_t>(5, size.size());
-  std::partial_sort(order.begin(), order.begin() + shown, order.end(), [&](int a, int b) { return size[a] > size[b]; });
+  std::partial_sort(order.begin(), order.begin() + shown, order.end(),
+                    [&](int a, int b) { return size[a] > size[b]; });
   std::vector<std::string> names;
   for (std::ptrdiff_t k = 0; k < shown; ++k) {
     names.push_back(callbacks.system.layout().name_of(order[static_cast<std::size_t>(k)]));
@@ -218,9 +222,10 @@ void Ida::Memory::fail(int code, const std::string& function) {
   report.worst_unknowns = worst_unknowns();
   report.time = time;
   // Where the first residual is none, so is the step.
-  if (IDAGetCurrentStep(ida.get(), &report.step) != IDA_SUCCESS || !std::isfinite(report.step)) report.step = 0.0;
-  report.message = fmt::format("{} stopped with {} at {:.9g} s, step {:.3g} s; worst: {}", function, name_of(code),
-                               time, report.step, fmt::join(report.worst_unknowns, "; "));
+  if (IDAGetCurrentStep(ida.get(), &report.step) != IDA_SUCCESS || !std::isfinite(report.step))
+    report.step = 0.0;
+  report.message = fmt::format("{} stopped with {} at {:.9g} s, step {:.3g} s; worst: {}", function,
+                               name_of(code), time, report.step, fmt::join(report.worst_unknowns, "; "));
 }
 
 Ida::Ida(DaeSystem& system, const IdaOptions& options, IdaIntegrals integrals)
@@ -233,7 +238,8 @@ void Ida::start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& ra
   memory_->begin(time, y, rate);
 }
 
-IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate, double towards) {
+IdaReport Ida::start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate,
+                                  double towards) {
   Memory& m = *memory_;
   m.begin(time, y, rate);
   const int code = IDACalcIC(m.ida.get(), IDA_YA_YDP_INIT, towards);
@@ -325,7 +331,8 @@ LimitOfStep Ida::what_limited() const {
   const Memory& m = *memory_;
   const auto& blocks = m.callbacks.system.layout().blocks();
   const auto block_of = [&](int unknown) {
-    const auto behind = std::ranges::find_if(blocks, [unknown](const DaeBlock& b) { return b.first > unknown; });
+    const auto behind =
+        std::ranges::find_if(blocks, [unknown](const DaeBlock& b) { return b.first > unknown; });
     return unknown < 0 ? -1 : static_cast<int>(behind - blocks.begin()) - 1;
   };
   if (m.limited_by == StepLimit::newton) return {m.limited_by, block_of(m.callbacks.limiting_unknown)};

@@ -17,14 +17,15 @@ namespace snare::numerics {
 
 /// Of what the Newton iteration's share of the tolerance is a bound.                          theory.md (M.12)
 enum class NewtonTest {
-  mean,          ///< of the mean over all unknowns, as IDA does it, at the rate of convergence of an earlier step
+  mean,  ///< of the mean over all unknowns, as IDA does it, at the rate of convergence of an earlier step
   every_unknown  ///< of every unknown, at a rate of convergence of 1/10 at best
 };
 
 /// The error of a step is tested block by block: the root mean square of error over tolerance in a block, and of that over
 /// the blocks with differential unknowns, must be below one.
 struct IdaOptions {
-  double relative_tolerance = 1e-5;  ///< of every unknown but those of blocks that are not relative [-], in (0, 1)
+  double relative_tolerance =
+      1e-5;  ///< of every unknown but those of blocks that are not relative [-], in (0, 1)
   /// Highest order of the backward differentiation formulas, 1 to 5. Orders above 2 are unstable for undamped
   /// oscillations that the step does not resolve.                                                theory.md (M.2)
   int max_order = 5;
@@ -34,7 +35,8 @@ struct IdaOptions {
   /// [s]; 0: a thousandth of the way to the limit, and at most a tenth of the longest step before the last start; where
   /// that is too long the error test shortens it.                                                theory.md (M.2)
   double first_step = 0.0;
-  bool cautious_start = false;  ///< with first_step = 0: IDA's own, within which nothing changes by half its tolerance
+  bool cautious_start =
+      false;  ///< with first_step = 0: IDA's own, within which nothing changes by half its tolerance
   bool test_algebraic = false;  ///< algebraic unknowns take part in the error test (index 1 only)
   NewtonTest newton_test = NewtonTest::mean;
   double newton_share = 0.33;  ///< of the tolerance that the Newton iteration may leave [-]
@@ -101,8 +103,8 @@ class Ida {
   void start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate);
   /// IDACalcIC: algebraic unknowns and rates of the differential ones from the given differential unknowns (index 1).
   /// `towards`: a later time of the integration, for the scale of time [s]. Starts from there when it converges.
-  [[nodiscard]] IdaReport start_consistently(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate,
-                                             double towards);
+  [[nodiscard]] IdaReport start_consistently(double time, const Eigen::VectorXd& y,
+                                             const Eigen::VectorXd& rate, double towards);
 
   /// One internal step, never beyond `limit` [s] nor longer than `max_step` [s], > 0.
   [[nodiscard]] IdaAdvance advance(double limit, double max_step = std::numeric_limits<double>::infinity());

@@ -12,7 +12,9 @@ namespace {
 class Stopwatch {
  public:
   explicit Stopwatch(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  ~Stopwatch() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
 
@@ -49,13 +51,14 @@ extern "C" int snare_ida_residual(realtype t, N_Vector y, N_Vector rate, N_Vecto
 extern "C" int snare_ida_weights(N_Vector y, N_Vector weights, void* data) {
   const auto& self = *static_cast<const IdaCallbacks*>(data);
   auto out = map(weights);
-  out = (self.scale.array() * (self.relative.array() * map(y).array().abs() + self.tolerance.array())).inverse();
+  out = (self.scale.array() * (self.relative.array() * map(y).array().abs() + self.tolerance.array()))
+            .inverse();
   return out.allFinite() ? 0 : -1;
 }
 
 // The values stay in the system's own matrix, where the linear solver finds them; IDA's is a place-holder.
-extern "C" int snare_ida_jacobian(realtype t, realtype c, N_Vector y, N_Vector rate, N_Vector, SUNMatrix, void* data,
-                                  N_Vector, N_Vector, N_Vector) {
+extern "C" int snare_ida_jacobian(realtype t, realtype c, N_Vector y, N_Vector rate, N_Vector, SUNMatrix,
+                                  void* data, N_Vector, N_Vector, N_Vector) {
   auto& self = *static_cast<IdaCallbacks*>(data);
   return guarded(self, [&] {
     const Stopwatch watch(self.statistics.jacobian_seconds);
@@ -98,7 +101,8 @@ int IdaCallbacks::begin_iteration(const Eigen::Ref<const Eigen::VectorXd>& predi
 // unknown among hundreds, a constraint's or a quaternion's, may then be left far outside its tolerance, and what is
 // quadratic in it drifts. Here every unknown must be within its share, and no rate is believed to be better than 1 in 10. What
 // would not get there with its matrix within the iterations that are left is given up at once: they would be lost.
-int IdaCallbacks::converged(int iteration, const NewtonState& at, const Eigen::Ref<const Eigen::VectorXd>& step,
+int IdaCallbacks::converged(int iteration, const NewtonState& at,
+                            const Eigen::Ref<const Eigen::VectorXd>& step,
                             const Eigen::Ref<const Eigen::VectorXd>& weight) {
   constexpr double best_rate = 0.1;
   constexpr double worst_rate = 0.9;
@@ -120,7 +124,8 @@ int IdaCallbacks::converged(int iteration, const NewtonState& at, const Eigen::R
     if (rate > worst_rate && !(size < at.may_grow * first_correction)) return give_up();
     remainder = rate < worst_rate ? rate / (1.0 - rate) : unknown_remainder;
     const int left = at.most - 1 - iteration;
-    if (!at.renewable && size * std::pow(rate, left) * std::max(remainder, best_rate) > at.share) return give_up();
+    if (!at.renewable && size * std::pow(rate, left) * std::max(remainder, best_rate) > at.share)
+      return give_up();
   }
   last_correction = size;
   if (iteration + 1 >= at.most) static_cast<void>(give_up());  // should it not be enough

@@ -25,7 +25,8 @@ struct NewtonState {
   double share = 0.0;      ///< of the tolerance that it may leave [-]
   int most = 0;            ///< iterations
   bool renewable = false;  ///< whether slow convergence brings a matrix of the present iterate
-  double may_grow = 0.0;   ///< corrections smaller than this share of the first may be larger than the one before [-]
+  double may_grow =
+      0.0;  ///< corrections smaller than this share of the first may be larger than the one before [-]
 };
 
 /// What IDA's callbacks in C reach through their user pointer; an exception waits here until IDA has returned.
@@ -53,12 +54,13 @@ struct IdaCallbacks {
 
   /// SUN_NLS_SUCCESS when every unknown is within its share of its tolerance after a step of the iteration, the first of which
   /// has the number 0; SUN_NLS_CONTINUE, or SUN_NLS_CONV_RECVR when it does not converge.        theory.md (M.12)
-  [[nodiscard]] int converged(int iteration, const NewtonState& at, const Eigen::Ref<const Eigen::VectorXd>& step,
+  [[nodiscard]] int converged(int iteration, const NewtonState& at,
+                              const Eigen::Ref<const Eigen::VectorXd>& step,
                               const Eigen::Ref<const Eigen::VectorXd>& weight);
 
   Eigen::VectorXd relative{};   // tolerance, zero where none acts
   Eigen::VectorXd tolerance{};  // absolute
-  Eigen::VectorXd scale{};      // of both tolerances: makes IDA's mean over unknowns one over blocks (see Ida)
+  Eigen::VectorXd scale{};  // of both tolerances: makes IDA's mean over unknowns one over blocks (see Ida)
 };
 
 // What IDA calls; the last argument is the IdaCallbacks. 0: done, positive: try a smaller step, negative: an exception waits.
@@ -66,8 +68,8 @@ extern "C" {
 int snare_ida_residual(realtype t, N_Vector y, N_Vector rate, N_Vector rows, void* data);
 /// Of the error test: one over the tolerances.
 int snare_ida_weights(N_Vector y, N_Vector weights, void* data);
-int snare_ida_jacobian(realtype t, realtype c, N_Vector y, N_Vector rate, N_Vector rows, SUNMatrix matrix, void* data,
-                       N_Vector work1, N_Vector work2, N_Vector work3);
+int snare_ida_jacobian(realtype t, realtype c, N_Vector y, N_Vector rate, N_Vector rows, SUNMatrix matrix,
+                       void* data, N_Vector work1, N_Vector work2, N_Vector work3);
 int snare_ida_events(realtype t, N_Vector y, N_Vector rate, realtype* values, void* data);
 int snare_ida_integrands(realtype t, N_Vector y, N_Vector rate, N_Vector values, void* data);
 }

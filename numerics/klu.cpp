@@ -30,7 +30,8 @@ Klu::Klu(const SparseMatrix& pattern) : handles_(new Handles) {
   handles_->symbolic = klu_analyze(pattern.order, const_cast<int*>(pattern.column_start.data()),
                                    const_cast<int*>(pattern.row.data()), &handles_->common);
   if (handles_->symbolic == nullptr && handles_->common.status != KLU_SINGULAR) {
-    throw base::LibraryError("klu_analyze", handles_->common.status, "the pattern is invalid, or memory has run out");
+    throw base::LibraryError("klu_analyze", handles_->common.status,
+                             "the pattern is invalid, or memory has run out");
   }
 }
 

@@ -18,7 +18,8 @@ struct Lanes {
   Four v{};
 
   [[gnu::always_inline]] Lanes() = default;
-  [[gnu::always_inline]] Lanes(double s) : v{s, s, s, s} {}  // NOLINT(google-explicit-constructor): a constant
+  [[gnu::always_inline]] Lanes(double s)
+      : v{s, s, s, s} {}  // NOLINT(google-explicit-constructor): a constant
   [[gnu::always_inline]] Lanes(double a, double b, double c, double d) : v{a, b, c, d} {}
   /// Four numbers behind each other.
   [[gnu::always_inline]] static Lanes at(const double* p) { return {p[0], p[1], p[2], p[3]}; }
@@ -109,13 +110,15 @@ struct SineCosine {
   }
   const Lanes u = a * a;
   const Lanes sine =
-      1.0 - u * (1.0 / 6) *
-                (1.0 - u * (1.0 / 20) * (1.0 - u * (1.0 / 42) * (1.0 - u * (1.0 / 72) * (1.0 - u * (1.0 / 110)))));
+      1.0 -
+      u * (1.0 / 6) *
+          (1.0 - u * (1.0 / 20) * (1.0 - u * (1.0 / 42) * (1.0 - u * (1.0 / 72) * (1.0 - u * (1.0 / 110)))));
   const Lanes cosine =
-      1.0 - u * (1.0 / 2) *
-                (1.0 - u * (1.0 / 12) *
-                           (1.0 - u * (1.0 / 30) *
-                                      (1.0 - u * (1.0 / 56) * (1.0 - u * (1.0 / 90) * (1.0 - u * (1.0 / 132))))));
+      1.0 -
+      u * (1.0 / 2) *
+          (1.0 - u * (1.0 / 12) *
+                     (1.0 - u * (1.0 / 30) *
+                                (1.0 - u * (1.0 / 56) * (1.0 - u * (1.0 / 90) * (1.0 - u * (1.0 / 132))))));
   return {a * sine, cosine};
 }
 
@@ -133,7 +136,8 @@ struct SineCosine {
   }
   const Lanes u = ratio * ratio;
   return ratio *
-         (1.0 - u * (1.0 / 3 - u * (1.0 / 5 - u * (1.0 / 7 - u * (1.0 / 9 - u * (1.0 / 11 - u * (1.0 / 13)))))));
+         (1.0 -
+          u * (1.0 / 3 - u * (1.0 / 5 - u * (1.0 / 7 - u * (1.0 / 9 - u * (1.0 / 11 - u * (1.0 / 13)))))));
 }
 
 /// Three of them.
@@ -153,14 +157,17 @@ struct Lanes3 {
   [[gnu::always_inline]] void add_to(double* row, int length) const {
     for (const int k : {0, 1, 2}) (*this)[k].add_to(row + k * length);
   }
-  [[nodiscard, gnu::always_inline]] const Lanes& operator[](int k) const { return of[static_cast<std::size_t>(k)]; }
+  [[nodiscard, gnu::always_inline]] const Lanes& operator[](int k) const {
+    return of[static_cast<std::size_t>(k)];
+  }
   [[nodiscard, gnu::always_inline]] Lanes& operator[](int k) { return of[static_cast<std::size_t>(k)]; }
   [[nodiscard, gnu::always_inline]] Lanes dot(const Lanes3& o) const {
     return of[0] * o.of[0] + of[1] * o.of[1] + of[2] * o.of[2];
   }
   [[nodiscard, gnu::always_inline]] Lanes squaredNorm() const { return dot(*this); }
   [[nodiscard, gnu::always_inline]] Lanes3 cross(const Lanes3& o) const {
-    return {of[1] * o.of[2] - of[2] * o.of[1], of[2] * o.of[0] - of[0] * o.of[2], of[0] * o.of[1] - of[1] * o.of[0]};
+    return {of[1] * o.of[2] - of[2] * o.of[1], of[2] * o.of[0] - of[0] * o.of[2],
+            of[0] * o.of[1] - of[1] * o.of[0]};
   }
   [[gnu::always_inline]] friend Lanes3 operator+(const Lanes3& a, const Lanes3& b) {
     return {a.of[0] + b.of[0], a.of[1] + b.of[1], a.of[2] + b.of[2]};

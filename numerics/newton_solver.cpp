@@ -76,8 +76,8 @@ int evaluate_guess(Newton& self, void* ida, N_Vector correction, bool& touches) 
   double time = 0.0, coefficient = 0.0, share = 1.0;
   N_Vector predicted{}, predicted_rate{}, guess{}, guess_rate{}, rows{};
   void* user = nullptr;
-  static_cast<void>(IDAGetNonlinearSystemData(ida, &time, &predicted, &predicted_rate, &guess, &guess_rate, &rows,
-                                              &coefficient, &user));
+  static_cast<void>(IDAGetNonlinearSystemData(ida, &time, &predicted, &predicted_rate, &guess, &guess_rate,
+                                              &rows, &coefficient, &user));
   const int code = self.callbacks.begin_iteration(map(guess), share);
   if (code != 0) return code > 0 ? SUN_NLS_CONV_RECVR : code;
   touches = share < 1.0;
@@ -86,8 +86,8 @@ int evaluate_guess(Newton& self, void* ida, N_Vector correction, bool& touches) 
   return self.system(correction, self.step, ida);
 }
 
-int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction, N_Vector weight, realtype share,
-                       booleantype call_setup, void* memory) {
+int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction, N_Vector weight,
+                       realtype share, booleantype call_setup, void* memory) {
   Newton& self = content(solver);
   IdaCallbacks& callbacks = self.callbacks;
   self.iterations = self.failures = 0;  // IDA adds them up
@@ -199,7 +199,8 @@ int snare_newton_failures(SUNNonlinearSolver solver, long* count) {
 
 }  // namespace
 
-SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, int renewals, SUNContext context) {
+SunNonlinearSolver make_newton_solver(IdaCallbacks& callbacks, N_Vector like, int renewals,
+                                      SUNContext context) {
   SunNonlinearSolver solver(made(SUNNonlinSolNewEmpty(context), "SUNNonlinSolNewEmpty"));
   solver->ops->gettype = snare_newton_type;
   solver->ops->solve = snare_newton_solve;

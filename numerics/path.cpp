@@ -11,8 +11,8 @@ namespace {
 // Newton's method on an assembled problem; `finish` completes system and residuals after each assembly,
 // `take` applies a step to the point.
 template <class Finish, class Take>
-SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int max_iterations, const Finish& finish,
-                   const Take& take) {
+SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int max_iterations,
+                   const Finish& finish, const Take& take) {
   SolveReport report;
   w.factored = false;
   double best = std::numeric_limits<double>::max();
@@ -80,7 +80,8 @@ SolveReport correct(PathProblem& problem, PathPoint& point, PathWorkspace& works
 std::optional<PathTangent> tangent(PathProblem& problem, const PathPoint& point, PathWorkspace& workspace,
                                    const PathTangent* like) {
   problem.assemble(point, workspace.system, workspace.by_parameter);
-  if (!workspace.solver.factorize(workspace.system)) return like != nullptr ? std::optional(*like) : std::nullopt;
+  if (!workspace.solver.factorize(workspace.system))
+    return like != nullptr ? std::optional(*like) : std::nullopt;
   PathTangent result;
   // [K C; D E] (q', b') = -(0, d r_b/d p) with p' = 1, then scaled to |q'|^2/n + p'^2 = 1.       theory.md (N.4)
   result.band.setZero(point.band.size());
@@ -89,7 +90,8 @@ std::optional<PathTangent> tangent(PathProblem& problem, const PathPoint& point,
   const double norm = std::sqrt(result.band.squaredNorm() / static_cast<double>(point.band.size()) + 1.0);
   double factor = 1.0 / norm;
   if (like != nullptr) {
-    const double product = like->band.dot(result.band) / static_cast<double>(point.band.size()) + like->parameter;
+    const double product =
+        like->band.dot(result.band) / static_cast<double>(point.band.size()) + like->parameter;
     if (product < 0.0) factor = -factor;
   }
   result.band *= factor;
@@ -98,8 +100,9 @@ std::optional<PathTangent> tangent(PathProblem& problem, const PathPoint& point,
   return result;
 }
 
-SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoint& start, const PathTangent& direction,
-                          double step, PathWorkspace& workspace, int max_iterations) {
+SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoint& start,
+                          const PathTangent& direction, double step, PathWorkspace& workspace,
+                          int max_iterations) {
   const auto n = static_cast<double>(point.band.size());
   const auto m = point.border.size();
   const auto finish = [&](PathWorkspace& w) {

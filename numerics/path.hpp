@@ -54,13 +54,14 @@ struct PathTangent {
   Eigen::VectorXd border;
   double parameter = 1.0;  ///< along the path's arc [-]
 };
-[[nodiscard]] std::optional<PathTangent> tangent(PathProblem& problem, const PathPoint& point, PathWorkspace& workspace,
-                                                 const PathTangent* like);
+[[nodiscard]] std::optional<PathTangent> tangent(PathProblem& problem, const PathPoint& point,
+                                                 PathWorkspace& workspace, const PathTangent* like);
 
 /// Newton's method for the point of the path in the plane through `start` + step * tangent that is normal to the
 /// tangent (pseudo arc length, Keller 1977): passes folds in the parameter.          theory.md (N.5)
 /// step: in the norm of PathTangent, in the units of band and parameter.
-SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoint& start, const PathTangent& direction,
-                          double step, PathWorkspace& workspace, int max_iterations);
+SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoint& start,
+                          const PathTangent& direction, double step, PathWorkspace& workspace,
+                          int max_iterations);
 
 }  // namespace snare::numerics

@@ -51,9 +51,11 @@ std::optional<std::string> Progress::add(const Ida& ida, long evaluations, doubl
 std::string Progress::why(const Ida& ida, double end, const Effort& effort) const {
   const double advance = ida.time() - effort.since;
   std::string text = fmt::format(
-      "stalled at {:.9g} s: {} evaluations of {} equations brought it on by {:.3g} s, less than the {:g} s that they "
+      "stalled at {:.9g} s: {} evaluations of {} equations brought it on by {:.3g} s, less than the {:g} s "
+      "that they "
       "must, and the rest would take {:.2g} times as many; the last step was {:.3g} s",
-      ida.time(), effort.evaluations, ida.y().size(), advance, least_, (end - ida.time()) / advance, ida.last_step());
+      ida.time(), effort.evaluations, ida.y().size(), advance, least_, (end - ida.time()) / advance,
+      ida.last_step());
   struct Share {
     StepLimit kind;
     long count;
@@ -72,7 +74,8 @@ std::string Progress::why(const Ida& ida, double end, const Effort& effort) cons
     all += share.count;
     if (share.count > 0) shares.push_back(share);
   }
-  std::stable_sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.count > b.count; });
+  std::stable_sort(shares.begin(), shares.end(),
+                   [](const Share& a, const Share& b) { return a.count > b.count; });
   const char* between = "; of its steps ";
   for (const Share& s : shares) {
     const double percent = 100.0 * static_cast<double>(s.count) / static_cast<double>(all);

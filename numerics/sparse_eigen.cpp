@@ -16,7 +16,8 @@ using Eigen::MatrixXd;
 namespace {
 
 MatrixXd orthonormal(const MatrixXd& columns) {
-  return Eigen::HouseholderQR<MatrixXd>(columns).householderQ() * MatrixXd::Identity(columns.rows(), columns.cols());
+  return Eigen::HouseholderQR<MatrixXd>(columns).householderQ() *
+         MatrixXd::Identity(columns.rows(), columns.cols());
 }
 
 /// The same vectors in every call, with what M reduces to nothing taken out.
@@ -41,14 +42,15 @@ GeneralEigen largest_eigenvalues(const LinearMap& map, int order, int count) {
     MV.middleCols(k * eigen_block, eigen_block) = map(V.middleCols(k * eigen_block, eigen_block));
     if (k + 1 == blocks) break;
     MatrixXd next = MV.middleCols(k * eigen_block, eigen_block);
-    for (int twice = 0; twice < 2; ++twice) next -= V.leftCols(known) * (V.leftCols(known).transpose() * next);
+    for (int twice = 0; twice < 2; ++twice)
+      next -= V.leftCols(known) * (V.leftCols(known).transpose() * next);
     V.middleCols(known, eigen_block) = orthonormal(next);
   }
   const GeneralEigen ritz = general_eigen(V.transpose() * MV);
   std::vector<Index> falling(static_cast<std::size_t>(ritz.values.size()));
   std::iota(falling.begin(), falling.end(), Index{0});
-  std::ranges::stable_sort(falling,
-                           [&](Index a, Index b) { return std::abs(ritz.values[a]) > std::abs(ritz.values[b]); });
+  std::ranges::stable_sort(
+      falling, [&](Index a, Index b) { return std::abs(ritz.values[a]) > std::abs(ritz.values[b]); });
   GeneralEigen result{Eigen::VectorXcd(count), Eigen::MatrixXcd(order, count)};
   Index found = 0;
   for (; found < count; ++found) {

@@ -83,7 +83,8 @@ void scale(SparseMatrix& matrix, const Eigen::VectorXd& rows, const Eigen::Vecto
 
 Eigen::VectorXd largest_of_rows(const SparseMatrix& matrix) {
   Eigen::VectorXd largest = Eigen::VectorXd::Zero(matrix.order);
-  for_each_entry(matrix, [&](int i, int, double value) { largest[i] = std::max(largest[i], std::abs(value)); });
+  for_each_entry(matrix,
+                 [&](int i, int, double value) { largest[i] = std::max(largest[i], std::abs(value)); });
   return largest;
 }
 
@@ -92,7 +93,8 @@ SparseMatrix from_triplets(int order, const std::vector<Triplet>& triplets) {
   pattern.reserve(triplets.size());
   for (const Triplet& t : triplets) pattern.emplace_back(t.row, t.column);
   SparseMatrix result = make_pattern(order, pattern);
-  for (const Triplet& t : triplets) result.value[static_cast<std::size_t>(result.slot(t.row, t.column))] += t.value;
+  for (const Triplet& t : triplets)
+    result.value[static_cast<std::size_t>(result.slot(t.row, t.column))] += t.value;
   return result;
 }
 

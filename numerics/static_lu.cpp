@@ -38,7 +38,8 @@ std::vector<int> elimination_order(const SparseMatrix& matrix) {
     zero[at(j)] = slot < 0 || matrix.value[at(slot)] == 0.0;
   }
   std::vector<int> after(at(n));  // twice the place, and one more than twice that of the last neighbour
-  std::vector<std::vector<int>> asks(at(n)), moves(at(n));  // of a multiplier's row; multipliers, of any other row
+  std::vector<std::vector<int>> asks(at(n)),
+      moves(at(n));  // of a multiplier's row; multipliers, of any other row
   for (int u = 0; u < n; ++u) after[at(u)] = 2 * place[at(u)];
   for (int j = 0; j < n; ++j) {
     for (int s = matrix.column_start[at(j)]; s < matrix.column_start[at(j) + 1]; ++s) {
@@ -116,7 +117,8 @@ template <int rows>
     const Mask& rest = first_of_four[at(run.length - j)];
     Four left = *reinterpret_cast<const Four*>(to + j);
     for (std::size_t r = 0; r < rows; ++r) {
-      const Mask entries = reinterpret_cast<Mask>(*reinterpret_cast<const Four*>(by[r] + run.offset + j)) & rest;
+      const Mask entries =
+          reinterpret_cast<Mask>(*reinterpret_cast<const Four*>(by[r] + run.offset + j)) & rest;
       left -= factors[r] * reinterpret_cast<Four>(entries);
     }
     *reinterpret_cast<Four*>(to + j) = left;
@@ -128,8 +130,9 @@ template <int rows>
     for (int k = first_elimination_[at(i)]; k < first_elimination_[at(i) + 1]; ++k) {
       const Elimination& e = eliminations_[at(k)];
       by_rows(
-          e.rows, [&](auto rows)
-                      __attribute__((always_inline)) { eliminate_by<rows>(e, eliminations_[at(k) + 1].first_run); });
+          e.rows, [&](auto rows) __attribute__((always_inline)) {
+            eliminate_by<rows>(e, eliminations_[at(k) + 1].first_run);
+          });
     }
     inverse_[at(i)] = 1.0 / values_[at(diagonal_[at(i)])];
     if (!std::isfinite(inverse_[at(i)]) || inverse_[at(i)] == 0.0) return false;
@@ -206,13 +209,16 @@ void StaticLu::gather() {
 }
 
 void StaticLu::list_blocks() {
-  const auto part = [&](int begin, int end) { return std::span(column_).subspan(at(begin), at(end - begin)); };
+  const auto part = [&](int begin, int end) {
+    return std::span(column_).subspan(at(begin), at(end - begin));
+  };
   const auto before = [&](int i) { return part(start_[at(i)], diagonal_[at(i)]); };
   const auto behind = [&](int i) { return part(diagonal_[at(i)] + 1, start_[at(i) + 1]); };
   // A row has what the one before has, and the diagonal of that besides.
   const auto same_before = [&](int i) {
     const auto own = before(i);
-    return !own.empty() && own.back() == i - 1 && std::ranges::equal(own.first(own.size() - 1), before(i - 1));
+    return !own.empty() && own.back() == i - 1 &&
+           std::ranges::equal(own.first(own.size() - 1), before(i - 1));
   };
   const auto same_behind = [&](int i) {
     const auto others = behind(i - 1);
@@ -226,7 +232,8 @@ void StaticLu::list_blocks() {
         entry_.push_back(r < rows ? first_entry(row + r, r) + static_cast<int>(c) : none);
     }
   };
-  const auto join = [&](std::vector<Block>& blocks, const auto& same, const auto& columns, const auto& first_entry) {
+  const auto join = [&](std::vector<Block>& blocks, const auto& same, const auto& columns,
+                        const auto& first_entry) {
     for (int i = 0; i < order_;) {
       int end = i + 1;
       while (end < std::min(order_, i + most_rows) && same(end)) ++end;
@@ -240,7 +247,8 @@ void StaticLu::list_blocks() {
     }
   };
   join(
-      before_, same_before, [&](int i, int) { return before(i); }, [&](int row, int, int) { return start_[at(row)]; });
+      before_, same_before, [&](int i, int) { return before(i); },
+      [&](int row, int, int) { return start_[at(row)]; });
   join(
       behind_, same_behind, [&](int, int end) { return behind(end - 1); },
       [&](int row, int rows, int r) { return diagonal_[at(row)] + rows - r; });

@@ -7,13 +7,14 @@
 namespace snare::numerics {
 
 void check(int code, const std::string& function) {
-  if (code < 0) throw base::LibraryError(function, code, "the library refused its input or could not be set up");
+  if (code < 0)
+    throw base::LibraryError(function, code, "the library refused its input or could not be set up");
 }
 
 SunMatrix make_matrix(const SparseMatrix& pattern, SUNContext context) {
-  SunMatrix matrix(made(
-      SUNSparseMatrix(pattern.order, pattern.order, static_cast<sunindextype>(pattern.row.size()), CSC_MAT, context),
-      "SUNSparseMatrix"));
+  SunMatrix matrix(made(SUNSparseMatrix(pattern.order, pattern.order,
+                                        static_cast<sunindextype>(pattern.row.size()), CSC_MAT, context),
+                        "SUNSparseMatrix"));
   copy(pattern, matrix.get());
   return matrix;
 }

@@ -28,19 +28,24 @@ Case joint_step(Runs&) {
 
 FigureResult table_2(Runs& runs) {
   const Run& run = runs.of(joint_step(runs));
-  const multibody::DeflectionLaw& law = run.asked.motions.runs.front().motion.arms.front().arm.joints.front().spring;
+  const multibody::DeflectionLaw& law =
+      run.asked.motions.runs.front().motion.arms.front().arm.joints.front().spring;
   const double per_degree = degree;  // N m/rad of 1 N m/deg is 1/degree; of a stiffness in N m/rad a degree
   const auto stiffness = [&](double deg) { return per_degree * law.stiffness(law.branch_of(deg * degree)); };
-  const auto damping = [&](double deg) { return per_degree * law.damping(law.branch_of(deg * degree), deg * degree); };
-  FigureResult result = inputs({{"stiffness below 0.04 deg", "N m/deg", 12.5, stiffness(0.02), 0.1},
-                                {"stiffness between 0.04 and 0.06 deg", "N m/deg", 475.0, stiffness(0.05), 1.0},
-                                {"stiffness above 0.06 deg", "N m/deg", 475.0, stiffness(0.1), 1.0},
-                                {"viscosity below 0.04 deg", "N m s/deg", 48.9, damping(0.02), 0.1},
-                                {"viscosity between 0.04 and 0.06 deg", "N m s/deg", 87.3, damping(0.05), 0.1},
-                                {"viscosity above 0.06 deg", "N m s/deg", 17.6, damping(0.1), 0.1}},
-                               computation);
+  const auto damping = [&](double deg) {
+    return per_degree * law.damping(law.branch_of(deg * degree), deg * degree);
+  };
+  FigureResult result =
+      inputs({{"stiffness below 0.04 deg", "N m/deg", 12.5, stiffness(0.02), 0.1},
+              {"stiffness between 0.04 and 0.06 deg", "N m/deg", 475.0, stiffness(0.05), 1.0},
+              {"stiffness above 0.06 deg", "N m/deg", 475.0, stiffness(0.1), 1.0},
+              {"viscosity below 0.04 deg", "N m s/deg", 48.9, damping(0.02), 0.1},
+              {"viscosity between 0.04 and 0.06 deg", "N m s/deg", 87.3, damping(0.05), 0.1},
+              {"viscosity above 0.06 deg", "N m s/deg", 17.6, damping(0.1), 0.1}},
+             computation);
   result.findings.emplace_back(
-      "Read as torque over deflection the table would let the torque jump at 0.04 deg from 0.5 to 19 N m; it is read "
+      "Read as torque over deflection the table would let the torque jump at 0.04 deg from 0.5 to 19 N m; it "
+      "is read "
       "as the slope, which "
       "keeps the torque continuous.");
   return result;
@@ -49,17 +54,18 @@ FigureResult table_2(Runs& runs) {
 FigureResult figure_6(Runs& runs) {
   const Run& run = runs.of(joint_step(runs));
   FigureResult result;
-  const auto swings = results::swings_of(run.asked.motions, {run.asked.motions.runs.front(), run.samples, run.result});
+  const auto swings =
+      results::swings_of(run.asked.motions, {run.asked.motions.runs.front(), run.samples, run.result});
   if (swings.size() < 2) return result;
   const auto [slow, fast] =
       std::ranges::minmax_element(swings, {}, [](const scenario::Swing& s) { return s.frequency(); });
   result.findings.push_back(
-      fmt::format("{} swings; their frequency goes from {} Hz at a peak of {} deg to {} Hz at {} deg.", swings.size(),
-                  digits(fast->frequency(), 3), digits(std::abs(fast->peak) / degree, 2), digits(slow->frequency(), 3),
-                  digits(std::abs(slow->peak) / degree, 2)));
-  result.rows.push_back(
-      statement("the larger of the extreme swings is the faster one: frequency varies with amplitude", measurement,
-                std::abs(fast->peak) > std::abs(slow->peak) && fast->frequency() > 1.1 * slow->frequency()));
+      fmt::format("{} swings; their frequency goes from {} Hz at a peak of {} deg to {} Hz at {} deg.",
+                  swings.size(), digits(fast->frequency(), 3), digits(std::abs(fast->peak) / degree, 2),
+                  digits(slow->frequency(), 3), digits(std::abs(slow->peak) / degree, 2)));
+  result.rows.push_back(statement(
+      "the larger of the extreme swings is the faster one: frequency varies with amplitude", measurement,
+      std::abs(fast->peak) > std::abs(slow->peak) && fast->frequency() > 1.1 * slow->frequency()));
   return result;
 }
 
@@ -92,7 +98,8 @@ Case air_table_traced(Runs& runs) {
 
 FigureResult table_5(Runs& runs) {
   const Run& run = runs.of(air_table_declared(runs));
-  const multibody::RigidBodyProperties& target = run.asked.motions.runs.front().motion.bodies.front().properties;
+  const multibody::RigidBodyProperties& target =
+      run.asked.motions.runs.front().motion.bodies.front().properties;
   const Eigen::Matrix3Xd& wire = run.samples.front().wires.front();
   const Eigen::Index edges = wire.cols() - 1;
   const double length = (wire.rightCols(edges) - wire.leftCols(edges)).colwise().norm().sum();
@@ -120,10 +127,10 @@ FigureResult figure_14(Runs& runs) {
     const Run& run = runs.of(asked(runs));
     const double before = run.samples.front().bodies.front().velocity.norm(),
                  after = run.samples.back().bodies.front().velocity.norm();
-    result.rows.push_back(statement(fmt::format("{}: the target is slower behind the contact", name), measurement,
-                                    after + run.usable() < before));
-    result.findings.push_back(
-        fmt::format("{}: {} m/s before the contact, {} m/s behind it.", name, digits(before, 3), digits(after, 3)));
+    result.rows.push_back(statement(fmt::format("{}: the target is slower behind the contact", name),
+                                    measurement, after + run.usable() < before));
+    result.findings.push_back(fmt::format("{}: {} m/s before the contact, {} m/s behind it.", name,
+                                          digits(before, 3), digits(after, 3)));
   }
   return result;
 }
@@ -136,7 +143,8 @@ FigureResult figure_15(Runs& runs) {
     const double rate = final_of(run, "target wz_rad_s");
     result.rows.push_back(statement(fmt::format("{}: the target starts rotating", name), measurement,
                                     std::abs(rate) + run.usable() > 0.01));
-    result.findings.push_back(fmt::format("{}: {} deg/s behind the contact.", name, digits(rate / degree, 3)));
+    result.findings.push_back(
+        fmt::format("{}: {} deg/s behind the contact.", name, digits(rate / degree, 3)));
   }
   return result;
 }
@@ -146,10 +154,11 @@ FigureResult figure_16(Runs& runs) {
             &declared = runs.of(air_table_declared(runs));
   FigureResult result;
   const auto impulse = [](const Run& run) { return run.result.impulse.front().y() + run.usable(); };
-  for (const auto& [name, run] :
-       {std::pair{"quadratic law", &law}, std::pair{"traced wire", &traced}, std::pair{"declared wire", &declared}}) {
+  for (const auto& [name, run] : {std::pair{"quadratic law", &law}, std::pair{"traced wire", &traced},
+                                  std::pair{"declared wire", &declared}}) {
     result.findings.push_back(fmt::format("{}: peak {} N, impulse along the approach {} N s.", name,
-                                          digits(run->result.peak_force.front(), 3), digits(impulse(*run), 3)));
+                                          digits(run->result.peak_force.front(), 3),
+                                          digits(impulse(*run), 3)));
   }
   result.rows.push_back({"", "impulse of the quadratic law over that of the traced wire: almost the same", "",
                          "Abiko et al., section 4.3", measurement, 1.0, impulse(law) / impulse(traced),
@@ -160,9 +169,10 @@ FigureResult figure_16(Runs& runs) {
 // ---- the arm: Tables 6 and 7, Figs. 17 to 21 ----
 
 Case payload_law(Runs&) {
-  return {"scenarios/jemrms_capture.toml",
-          {"duration_s=10.0", "wires[wire].quadratic={position_mm=90.0,A_N_m2=890183.0,B_N_m=-1297.6,C_N=0.3457}",
-           "wires[wire].model=\"quadratic\""}};
+  return {
+      "scenarios/jemrms_capture.toml",
+      {"duration_s=10.0", "wires[wire].quadratic={position_mm=90.0,A_N_m2=890183.0,B_N_m=-1297.6,C_N=0.3457}",
+       "wires[wire].model=\"quadratic\""}};
 }
 Case payload_traced(Runs& runs) {
   std::vector<std::string> settings = traced_keys(runs);
@@ -185,11 +195,12 @@ FigureResult figure_18(Runs& runs) {
   const Run& run = runs.of(payload_law(runs));
   result.scene = &runs.of(payload_traced(runs));
   const double gap = final_of(run, "probe on wire gap_mm"), speed = final_of(run, "payload vy_m_s");
-  result.findings.push_back(fmt::format(
-      "By the quadratic law the payload leaves at {} mm/s; {:g} s after the start its probe is {} mm from the wire.",
-      digits(-1e3 * speed, 3), run.samples.back().time, digits(gap, 3)));
-  result.rows.push_back(statement("the payload bounces away: its probe has left the wire and moves back", computation,
-                                  gap > 0.0 && speed + run.usable() < 0.0));
+  result.findings.push_back(
+      fmt::format("By the quadratic law the payload leaves at {} mm/s; {:g} s after the start its probe is "
+                  "{} mm from the wire.",
+                  digits(-1e3 * speed, 3), run.samples.back().time, digits(gap, 3)));
+  result.rows.push_back(statement("the payload bounces away: its probe has left the wire and moves back",
+                                  computation, gap > 0.0 && speed + run.usable() < 0.0));
   return result;
 }
 
@@ -205,14 +216,17 @@ FigureResult figure_20(Runs& runs) {
     FigureCurve curve{arm.joints[static_cast<std::size_t>(j)].name};
     for (const coupling::MotionSample& s : run.samples) {
       curve.x.push_back(s.time - zero);
-      curve.y.push_back((s.arms.front().state.q[coordinate] - run.samples.front().arms.front().state.q[coordinate]) /
-                        degree);
+      curve.y.push_back(
+          (s.arms.front().state.q[coordinate] - run.samples.front().arms.front().state.q[coordinate]) /
+          degree);
       largest = std::max(largest, std::abs(curve.y.back()));
     }
     result.curves.push_back(std::move(curve));
   }
-  result.findings.push_back(fmt::format("The largest change of a joint angle is {} deg.", digits(largest, 3)));
-  result.rows.push_back(statement("the arm moves after the contact", computation, largest + run.usable() > 1e-3));
+  result.findings.push_back(
+      fmt::format("The largest change of a joint angle is {} deg.", digits(largest, 3)));
+  result.rows.push_back(
+      statement("the arm moves after the contact", computation, largest + run.usable() > 1e-3));
   return result;
 }
 
@@ -229,83 +243,93 @@ FigureResult figure_21(Runs& runs) {
       attitude.y.push_back(turn.angle() * turn.axis().z() / degree);
     }
     result.findings.push_back(fmt::format("{}: peak {} N; the payload turns by {} deg in {:g} s.", name,
-                                          digits(run.result.peak_force.front(), 3), digits(attitude.y.back(), 3),
-                                          attitude.x.back()));
-    result.rows.push_back(statement(fmt::format("{}: the payload rotates after the contact", name), computation,
-                                    std::abs(attitude.y.back()) + run.usable() > 0.1));
+                                          digits(run.result.peak_force.front(), 3),
+                                          digits(attitude.y.back(), 3), attitude.x.back()));
+    result.rows.push_back(statement(fmt::format("{}: the payload rotates after the contact", name),
+                                    computation, std::abs(attitude.y.back()) + run.usable() > 0.1));
     result.curves.push_back(std::move(attitude));
   }
   return result;
 }
 
 constexpr const char* on_the_table =
-    "scenario `data/scenarios/air_table.toml`: by the printed quadratic law, by the wire that the tracing of Table 4 "
+    "scenario `data/scenarios/air_table.toml`: by the printed quadratic law, by the wire that the tracing of "
+    "Table 4 "
     "ends with, and by the wire as "
-    "declared. Assumed: approach at 0.1 m/s, probe 50 mm off the centre of mass. Time is counted from the first "
+    "declared. Assumed: approach at 0.1 m/s, probe 50 mm off the centre of mass. Time is counted from the "
+    "first "
     "touch.";
 constexpr const char* on_the_arm =
-    "scenario `data/scenarios/jemrms_capture.toml`: an arm with the joints of Table 2 and one wire in its end "
+    "scenario `data/scenarios/jemrms_capture.toml`: an arm with the joints of Table 2 and one wire in its "
+    "end "
     "effector; by the printed quadratic law at "
-    "90 mm and by the traced wire. Assumed: 10 mm/s for the printed 10 m/s, links, pose, servos, the place of the "
+    "90 mm and by the traced wire. Assumed: 10 mm/s for the printed 10 m/s, links, pose, servos, the place "
+    "of the "
     "probe.";
 
 const Axis time{"time from first touch", "s"}, displacement{"displacement", "mm"};
 
 std::vector<Figure> bench_figures() {
-  return {
-      {"Table 2",
-       "Determined characteristics of the joints",
-       "The stiffness and the viscosity of a joint depend on its deflection; they were matched to a step in orbit.",
-       "Read back from the arm file `data/arms/jemrms_like.toml`.",
-       {},
-       {},
-       table_2},
-      {"Fig. 6",
-       "Step of a joint, simulated",
-       "The joint is nonlinear, and the frequency of its oscillation varies. The first two vibrations were matched.",
-       "scenario `data/scenarios/jemrms_step.toml`. Assumed: a step of 0.5 deg, the arm and its pose.",
-       {{"Deflection of the joint", {"time", "s"}, {"deflection", "deg"}}},
-       {{"joint 3", joint_step, "rms::joint_3 deflection_deg"}},
-       figure_6},
-      {"Table 3",
-       "Conditions of the wire",
-       "SUS-304, fixed at both ends with slack.",
-       "Read back from `data/experiments/published_static.toml`.",
-       {},
-       {},
-       conditions_of_the_wire},
-      {"Fig. 9",
-       "The loose wire and the largest displacement Q",
-       "The displacement is counted from the initial position and ends at Q, which follows from total and fixed "
-       "length.",
-       "Shape of the declared wire at rest; Q by the ellipse about the mounts.",
-       {{"Loose and taut wire", {"along the chord", "mm"}, {"off the chord", "mm"}, true}},
-       {},
-       largest_displacement},
-      {"Fig. 10",
-       "Force and displacement at three positions",
-       "The force grows faster than the displacement; the offset at zero is measurement error; at 40 and 65 mm the "
-       "ends slipped.",
-       "The printed fits with the scatter that their R2 implies; the declared wire; the traced wire with its fitted "
-       "zeros. Assumed: fits that reach to 4 mm.",
-       {{"Reaction force", displacement, {"force", "N"}}},
-       {},
-       forces_at_three_positions},
-      {"Table 4",
-       "Quadratic fits F = A d^2 + B d + C",
-       "F in N, d in m; A, B, C and R2 at three positions.",
-       "The same fit through the curve of the traced wire.",
-       {},
-       {},
-       quadratic_fits},
-      {"Fig. 11",
-       "Stiffness of the linear spring-dashpot model",
-       "The stiffness becomes larger as the displacement becomes larger.",
-       "Secant F/d and tangent dF/dd of the printed fits and of the traced wire; which of them the paper draws is not "
-       "in the text.",
-       {{"Secant stiffness", displacement, {"F/d", "N/mm"}}, {"Tangent stiffness", displacement, {"dF/dd", "N/mm"}}},
-       {},
-       stiffness_at_three_positions}};
+  return {{"Table 2",
+           "Determined characteristics of the joints",
+           "The stiffness and the viscosity of a joint depend on its deflection; they were matched to a step "
+           "in orbit.",
+           "Read back from the arm file `data/arms/jemrms_like.toml`.",
+           {},
+           {},
+           table_2},
+          {"Fig. 6",
+           "Step of a joint, simulated",
+           "The joint is nonlinear, and the frequency of its oscillation varies. The first two vibrations "
+           "were matched.",
+           "scenario `data/scenarios/jemrms_step.toml`. Assumed: a step of 0.5 deg, the arm and its pose.",
+           {{"Deflection of the joint", {"time", "s"}, {"deflection", "deg"}}},
+           {{"joint 3", joint_step, "rms::joint_3 deflection_deg"}},
+           figure_6},
+          {"Table 3",
+           "Conditions of the wire",
+           "SUS-304, fixed at both ends with slack.",
+           "Read back from `data/experiments/published_static.toml`.",
+           {},
+           {},
+           conditions_of_the_wire},
+          {"Fig. 9",
+           "The loose wire and the largest displacement Q",
+           "The displacement is counted from the initial position and ends at Q, which follows from total "
+           "and fixed "
+           "length.",
+           "Shape of the declared wire at rest; Q by the ellipse about the mounts.",
+           {{"Loose and taut wire", {"along the chord", "mm"}, {"off the chord", "mm"}, true}},
+           {},
+           largest_displacement},
+          {"Fig. 10",
+           "Force and displacement at three positions",
+           "The force grows faster than the displacement; the offset at zero is measurement error; at 40 and "
+           "65 mm the "
+           "ends slipped.",
+           "The printed fits with the scatter that their R2 implies; the declared wire; the traced wire with "
+           "its fitted "
+           "zeros. Assumed: fits that reach to 4 mm.",
+           {{"Reaction force", displacement, {"force", "N"}}},
+           {},
+           forces_at_three_positions},
+          {"Table 4",
+           "Quadratic fits F = A d^2 + B d + C",
+           "F in N, d in m; A, B, C and R2 at three positions.",
+           "The same fit through the curve of the traced wire.",
+           {},
+           {},
+           quadratic_fits},
+          {"Fig. 11",
+           "Stiffness of the linear spring-dashpot model",
+           "The stiffness becomes larger as the displacement becomes larger.",
+           "Secant F/d and tangent dF/dd of the printed fits and of the traced wire; which of them the paper "
+           "draws is not "
+           "in the text.",
+           {{"Secant stiffness", displacement, {"F/d", "N/mm"}},
+            {"Tangent stiffness", displacement, {"dF/dd", "N/mm"}}},
+           {},
+           stiffness_at_three_positions}};
 }
 
 /// A column of history.csv by every model of the wire on the air table.
@@ -386,20 +410,21 @@ std::vector<Figure> arm_figures() {
 }
 
 std::vector<Lost> lost() {
-  return {{"Figs. 1 to 4, 7, 8, 12", "photographs and sketches; nothing is computed for them"},
-          {"Fig. 5, the step in orbit",
-           "the readings are not printed; the first two vibrations of Fig. 6 cannot be compared with them"},
-          {"readings of Fig. 10", "only their quadratic fits are printed, without range and number of readings"},
-          {"curves of Fig. 11", "drawn only; secant or tangent stiffness is not stated. Both are computed"},
-          {"c of eqs (3) to (5), G(d), mu", "no values are printed"},
-          {"measured curves of Figs. 14 to 16",
-           "drawn only; the approach velocity and the place of the probe on the target are not printed: assumed"},
-          {"values of Figs. 20 and 21", "drawn only; link data and pose of the arm are not printed: assumed"},
-          {"approach of the payload", "printed as 10 m/s, at which no wire would hold: 10 mm/s assumed"},
-          {"B at s = 40 mm in Table 4",
-           "a hundredth of the others, possibly a slip of the decimal point; taken as printed"},
-          {"wire inside the end effector",
-           "different from the one on the bench, by the paper's word; its numbers are not printed"}};
+  return {
+      {"Figs. 1 to 4, 7, 8, 12", "photographs and sketches; nothing is computed for them"},
+      {"Fig. 5, the step in orbit",
+       "the readings are not printed; the first two vibrations of Fig. 6 cannot be compared with them"},
+      {"readings of Fig. 10", "only their quadratic fits are printed, without range and number of readings"},
+      {"curves of Fig. 11", "drawn only; secant or tangent stiffness is not stated. Both are computed"},
+      {"c of eqs (3) to (5), G(d), mu", "no values are printed"},
+      {"measured curves of Figs. 14 to 16",
+       "drawn only; the approach velocity and the place of the probe on the target are not printed: assumed"},
+      {"values of Figs. 20 and 21", "drawn only; link data and pose of the arm are not printed: assumed"},
+      {"approach of the payload", "printed as 10 m/s, at which no wire would hold: 10 mm/s assumed"},
+      {"B at s = 40 mm in Table 4",
+       "a hundredth of the others, possibly a slip of the decimal point; taken as printed"},
+      {"wire inside the end effector",
+       "different from the one on the bench, by the paper's word; its numbers are not printed"}};
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ struct Pushes {
   identification::Experiment experiment;      ///< declared wire, published laws
   std::vector<coupling::PushCurve> declared;  ///< one a series
   std::vector<std::vector<double>> travel,
-      traced_force;                              ///< displacement [m] and force of the traced wire [N], one a series
+      traced_force;  ///< displacement [m] and force of the traced wire [N], one a series
   std::vector<reduction::FittedLaw> traced_law;  ///< quadratic through the traced wire's curve, one a series
 };
 
@@ -43,7 +43,8 @@ coupling::PushCurve pushed(const coupling::PushProblem& test, const Runs& runs) 
 }
 
 /// Force of the traced wire at the displacements of a series, which are counted from the zero that was fitted with it.
-std::vector<double> recorded(const reduction::WireCase& wire, std::size_t k, const Series& series, const Runs& runs) {
+std::vector<double> recorded(const reduction::WireCase& wire, std::size_t k, const Series& series,
+                             const Runs& runs) {
   coupling::PushProblem test = wire.test;
   test.contact_position = series.test.contact_position;
   const double zero = wire.law_offsets.at(k);
@@ -72,8 +73,9 @@ const Pushes& pushes(Runs& runs) {
       result.traced_force.push_back(recorded(wire, k, series, runs));
       std::vector<std::size_t> all(series.test.travel.size());
       std::iota(all.begin(), all.end(), 0);
-      result.traced_law.push_back(reduction::fit_law(
-          coupling::quadratic_law(), numerics::HermiteCurve(series.test.travel, result.traced_force[k]), all));
+      result.traced_law.push_back(
+          reduction::fit_law(coupling::quadratic_law(),
+                             numerics::HermiteCurve(series.test.travel, result.traced_force[k]), all));
     }
     return result;
   });
@@ -92,17 +94,18 @@ reduction::WireCase traced_wire(const Runs& runs) {
 FigureResult conditions_of_the_wire(Runs& runs) {
   const auto& series = pushes(runs).experiment.series;
   const coupling::PushProblem& test = series.front().test;
-  FigureResult result = inputs({{"diameter", "mm", 1.5, 1e3 * test.wire.diameter, 0.1},
-                                {"length", "mm", 180.0, 1e3 * test.wire.length, 1.0},
-                                {"fixed length", "mm", 175.0, 1e3 * test.mount.span, 1.0},
-                                {"contact position, first", "mm", 40.0, 1e3 * series[0].test.contact_position, 1.0},
-                                {"contact position, second", "mm", 65.0, 1e3 * series[1].test.contact_position, 1.0},
-                                {"contact position, third", "mm", 90.0, 1e3 * series[2].test.contact_position, 1.0}},
-                               measurement);
-  result.findings.push_back(
-      fmt::format("A solid round wire of these numbers and of 193 GPa has a bending stiffness of {} N m^2 and an axial "
-                  "stiffness of {} kN.",
-                  digits(test.wire.bending_stiffness(), 3), digits(1e-3 * test.wire.axial_stiffness(), 3)));
+  FigureResult result =
+      inputs({{"diameter", "mm", 1.5, 1e3 * test.wire.diameter, 0.1},
+              {"length", "mm", 180.0, 1e3 * test.wire.length, 1.0},
+              {"fixed length", "mm", 175.0, 1e3 * test.mount.span, 1.0},
+              {"contact position, first", "mm", 40.0, 1e3 * series[0].test.contact_position, 1.0},
+              {"contact position, second", "mm", 65.0, 1e3 * series[1].test.contact_position, 1.0},
+              {"contact position, third", "mm", 90.0, 1e3 * series[2].test.contact_position, 1.0}},
+             measurement);
+  result.findings.push_back(fmt::format(
+      "A solid round wire of these numbers and of 193 GPa has a bending stiffness of {} N m^2 and an axial "
+      "stiffness of {} kN.",
+      digits(test.wire.bending_stiffness(), 3), digits(1e-3 * test.wire.axial_stiffness(), 3)));
   return result;
 }
 
@@ -117,12 +120,13 @@ FigureResult largest_displacement(Runs& runs) {
     if (range.kind == identification::FitRange::Kind::taut_from_chord) height = range.to;
   if (height.empty()) throw std::runtime_error("the declared wire is taut before it is pushed");
   FigureResult result;
-  result.table.columns = {"contact position [mm]", "height of the loose wire [mm]", "height of the taut wire [mm]",
-                          "distance between them [mm]"};
+  result.table.columns = {"contact position [mm]", "height of the loose wire [mm]",
+                          "height of the taut wire [mm]", "distance between them [mm]"};
   const std::vector<double> ends{0.0, 1e3 * p.experiment.series.front().test.mount.span};
   for (std::size_t k = 0; k < p.declared.size(); ++k) {
     const Series& series = p.experiment.series[k];
-    const double s = 1e3 * series.test.contact_position, rest = 1e3 * p.declared[k].natural_height, q = 1e3 * height[k];
+    const double s = 1e3 * series.test.contact_position, rest = 1e3 * p.declared[k].natural_height,
+                 q = 1e3 * height[k];
     result.table.rows.push_back({digits(s), digits(rest), digits(q), digits(q - rest)});
     if (k == 0)
       result.curves.push_back({"loose wire", Origin::computed, in_mm(p.declared[k].shapes.front().x),
@@ -146,7 +150,8 @@ FigureResult forces_at_three_positions(Runs& runs) {
       declared.y.push_back(point.force);
     }
     result.curves.push_back(std::move(published));
-    result.curves.push_back({"traced wire, " + at(series), Origin::computed, in_mm(p.travel[k]), p.traced_force[k]});
+    result.curves.push_back(
+        {"traced wire, " + at(series), Origin::computed, in_mm(p.travel[k]), p.traced_force[k]});
     result.curves.push_back(std::move(declared));
   }
   return result;
@@ -162,18 +167,20 @@ FigureResult quadratic_fits(Runs& runs) {
     const reduction::FittedLaw& traced = p.traced_law[k];
     double apart = 0.0;
     for (const double d : p.travel[k])
-      apart +=
-          std::pow(traced.form->force(traced.values, d) - law.force(d), 2) / static_cast<double>(p.travel[k].size());
+      apart += std::pow(traced.form->force(traced.values, d) - law.force(d), 2) /
+               static_cast<double>(p.travel[k].size());
     apart = std::sqrt(apart);
     result.table.rows.push_back({digits(1e3 * p.experiment.series[k].test.contact_position), digits(law.a, 6),
-                                 digits(traced.values[0], 6), digits(law.b), digits(traced.values[1]), digits(law.c),
-                                 digits(traced.values[2]), digits(apart, 2), digits(law.scatter(), 2)});
+                                 digits(traced.values[0], 6), digits(law.b), digits(traced.values[1]),
+                                 digits(law.c), digits(traced.values[2]), digits(apart, 2),
+                                 digits(law.scatter(), 2)});
     result.rows.push_back(
         {"",
          fmt::format("quadratic of the traced wire at {}: rms to the printed one over its scatter, at most 1",
                      at(p.experiment.series[k])),
          "", "", measurement, 0.0, apart / law.scatter(),
-         Limit::absolute(1.0, "an upper bound; the value is a multiple of the scatter of the published readings")});
+         Limit::absolute(
+             1.0, "an upper bound; the value is a multiple of the scatter of the published readings")});
   }
   return result;
 }
@@ -194,7 +201,8 @@ FigureResult stiffness_at_three_positions(Runs& runs) {
     for (const double d : p.travel[k]) {
       if (d < least) continue;
       const double secant = curve.value(d) / d;
-      const double values[4]{series.law->force(d) / d, secant, 2.0 * series.law->a * d + series.law->b, curve.slope(d)};
+      const double values[4]{series.law->force(d) / d, secant, 2.0 * series.law->a * d + series.law->b,
+                             curve.slope(d)};
       for (std::size_t i = 0; i < 4; ++i) {
         curves[i].x.push_back(1e3 * d);
         curves[i].y.push_back(1e-3 * values[i]);
@@ -206,17 +214,19 @@ FigureResult stiffness_at_three_positions(Runs& runs) {
     const double end = p.travel[k].back();
     last.push_back(curve.value(end) / end);
     for (FigureCurve& one : curves) result.curves.push_back(std::move(one));
-    result.rows.push_back({"", fmt::format("secant stiffness at {}, {:g} mm", at(series), 1e3 * end), "N/m",
-                           "Abiko et al., Table 4", measurement, series.law->force(end) / end, last.back(),
-                           Limit::absolute(2.0 * series.law->scatter() / end,
-                                           "two standard deviations of a published reading over the displacement")});
-    result.rows.push_back({"", fmt::format("larger displacement, larger stiffness at {}: points that fall", at(series)),
-                           "", "Abiko et al., section 4.2", measurement, 0.0, falls,
-                           Limit::absolute(0.5, "a number of points, of which there should be none")});
+    result.rows.push_back(
+        {"", fmt::format("secant stiffness at {}, {:g} mm", at(series), 1e3 * end), "N/m",
+         "Abiko et al., Table 4", measurement, series.law->force(end) / end, last.back(),
+         Limit::absolute(2.0 * series.law->scatter() / end,
+                         "two standard deviations of a published reading over the displacement")});
+    result.rows.push_back(
+        {"", fmt::format("larger displacement, larger stiffness at {}: points that fall", at(series)), "",
+         "Abiko et al., section 4.2", measurement, 0.0, falls,
+         Limit::absolute(0.5, "a number of points, of which there should be none")});
   }
-  result.rows.push_back(
-      statement(fmt::format("stiffness falls from s = 40 over 65 to 90 mm at {:g} mm", 1e3 * p.travel[0].back()),
-                measurement, last[0] > last[1] && last[1] > last[2]));
+  result.rows.push_back(statement(
+      fmt::format("stiffness falls from s = 40 over 65 to 90 mm at {:g} mm", 1e3 * p.travel[0].back()),
+      measurement, last[0] > last[1] && last[1] > last[2]));
   return result;
 }
 

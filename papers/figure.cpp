@@ -32,7 +32,8 @@ FigureResult made(const Paper& paper, const Figure& figure, Runs& runs) {
   if (figure.compute != nullptr) result = figure.compute(runs);
   for (const HistoryCurve& curve : figure.curves) {
     const Run& run = runs.of(curve.run(runs));
-    if (!run.result.report.usable()) result.failure = fmt::format("{}: {}", curve.name, run.result.report.message);
+    if (!run.result.report.usable())
+      result.failure = fmt::format("{}: {}", curve.name, run.result.report.message);
     result.curves.push_back(drawn(curve, run));
   }
   for (validation::Row& row : result.rows) {
@@ -59,8 +60,9 @@ FigureResult inputs(const std::vector<Input>& all, validation::Kind kind) {
   result.table.columns = {"quantity", "unit", "printed", "used"};
   for (const Input& i : all) {
     result.table.rows.push_back({i.quantity, i.unit, digits(i.printed, 8), digits(i.used, 6)});
-    result.rows.push_back({"", std::string(i.quantity) + " as used", i.unit, "", kind, i.printed, i.used,
-                           validation::Limit::absolute(0.5 * i.last_digit, "half of the last printed digit")});
+    result.rows.push_back(
+        {"", std::string(i.quantity) + " as used", i.unit, "", kind, i.printed, i.used,
+         validation::Limit::absolute(0.5 * i.last_digit, "half of the last printed digit")});
   }
   return result;
 }

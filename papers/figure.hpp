@@ -69,9 +69,9 @@ struct HistoryCurve {
   Case (*run)(Runs& runs);
   const char* y;  ///< column of history.csv or telemetry.csv
   std::size_t panel = 0;
-  double factor = 1.0;                                     ///< from the unit of the column to that of the panel
-  const char* x = "time_s";                                ///< column of the same table
-  double (*zero)(const Run&) = nullptr;                    ///< offset that is subtracted from x; null: 0
+  double factor = 1.0;                   ///< from the unit of the column to that of the panel
+  const char* x = "time_s";              ///< column of the same table
+  double (*zero)(const Run&) = nullptr;  ///< offset that is subtracted from x; null: 0
   double from = -std::numeric_limits<double>::infinity();  ///< range of time shown [s]
   double to = std::numeric_limits<double>::infinity();
 };

@@ -23,7 +23,8 @@ using validation::Limit;
 
 constexpr auto measurement = Kind::published_measurement;
 constexpr auto computation = Kind::published_computation;
-constexpr double table_K_wire = 5.55e5, table_K_GF = 1.0e8, table_rate = 29.0;  // [N/m], [N m/rad], [deg/s]: Table 4
+constexpr double table_K_wire = 5.55e5, table_K_GF = 1.0e8,
+                 table_rate = 29.0;  // [N/m], [N m/rad], [deg/s]: Table 4
 
 // ---- the wire: Fig. 5, eqs (1) and (2) ----
 
@@ -42,8 +43,9 @@ FigureResult figure_5(Runs&) {
     }
   }
   FigureResult result;
-  result.findings.push_back(fmt::format("K_contact = {} N/m; at 10 mm eq. (1) gives {} times the force of eq. (2).",
-                                        digits(linear(1e-3, 0.0)[1], 5), digits(first.y.back() / second.y.back(), 3)));
+  result.findings.push_back(
+      fmt::format("K_contact = {} N/m; at 10 mm eq. (1) gives {} times the force of eq. (2).",
+                  digits(linear(1e-3, 0.0)[1], 5), digits(first.y.back() / second.y.back(), 3)));
   result.curves = {std::move(first), std::move(second)};
   return result;
 }
@@ -57,13 +59,15 @@ Case capture(Runs&) {
 }
 
 FigureResult table_1(Runs& runs) {
-  const std::vector<coupling::MotionBody>& bodies = runs.of(capture(runs)).asked.motions.runs.front().motion.bodies;
+  const std::vector<coupling::MotionBody>& bodies =
+      runs.of(capture(runs)).asked.motions.runs.front().motion.bodies;
   const auto found = std::ranges::find(bodies, "htv", &coupling::MotionBody::name);
   if (found == bodies.end()) throw std::out_of_range("no body \"htv\"");
   const double mass = found->properties.mass, along = found->properties.inertia(2, 2),
                across = found->properties.inertia(0, 0);
   // A uniform cylinder: I = m r^2/2 along its axis, m (3 r^2 + l^2)/12 across it.
-  const double radius = std::sqrt(2.0 * along / mass), length = std::sqrt(12.0 * across / mass - 3.0 * radius * radius);
+  const double radius = std::sqrt(2.0 * along / mass),
+               length = std::sqrt(12.0 * across / mass - 3.0 * radius * radius);
   return inputs({{"total weight", "t", 16.0, 1e-3 * mass, 1.0},
                  {"total length, of the cylinder with this inertia", "m", 9.8, length, 0.1},
                  {"diameter, of the same cylinder", "m", 4.4, 2.0 * radius, 0.1}},
@@ -101,12 +105,14 @@ FigureResult figure_6(Runs& runs) {
   x0 = x.front();
   y0 = y.front();
   slope = (y.back() - y0) / (x.back() - x0);
-  for (std::size_t i = 0; i < x.size(); ++i) constancy = std::max(constancy, std::abs(y[i] - y0 - slope * (x[i] - x0)));
+  for (std::size_t i = 0; i < x.size(); ++i)
+    constancy = std::max(constancy, std::abs(y[i] - y0 - slope * (x[i] - x0)));
   FigureResult result;
-  result.findings.push_back(fmt::format(
-      "Before the first touch the angle differs from a straight line by {} deg at most.", digits(constancy, 2)));
-  result.rows.push_back({"", "rate at which a wire turns before the first touch", "deg/s", "Honda et al., Table 4",
-                         computation, table_rate, slope + run.usable(),
+  result.findings.push_back(
+      fmt::format("Before the first touch the angle differs from a straight line by {} deg at most.",
+                  digits(constancy, 2)));
+  result.rows.push_back({"", "rate at which a wire turns before the first touch", "deg/s",
+                         "Honda et al., Table 4", computation, table_rate, slope + run.usable(),
                          Limit::absolute(0.5, "half of the last printed digit")});
   result.curves.push_back(std::move(angle));
   return result;
@@ -129,12 +135,12 @@ FigureResult figure_11(Runs& runs) {
   FigureResult result;
   for (std::size_t k = 0; k < 3; ++k) {
     result.findings.push_back(
-        fmt::format("Wire {}: first touch {} s before the shaft is tight, peak force on the shaft {} N.", k + 1,
-                    digits(tight(run) - run.first_touch(k), 3), digits(run.result.peak_force[k], 3)));
+        fmt::format("Wire {}: first touch {} s before the shaft is tight, peak force on the shaft {} N.",
+                    k + 1, digits(tight(run) - run.first_touch(k), 3), digits(run.result.peak_force[k], 3)));
   }
-  result.rows.push_back(
-      statement("wire 1 collides first, then wire 2", computation,
-                run.first_touch(0) + run.usable() < run.first_touch(1) && run.first_touch(1) < run.first_touch(2)));
+  result.rows.push_back(statement(
+      "wire 1 collides first, then wire 2", computation,
+      run.first_touch(0) + run.usable() < run.first_touch(1) && run.first_touch(1) < run.first_touch(2)));
   return result;
 }
 
@@ -181,8 +187,9 @@ FigureResult table_4(Runs& runs) {
 /// Frequency of a vibration about its mean from a time on [Hz]: from the first upward crossing to the last.
 double frequency(const std::vector<double>& times, const std::vector<double>& values, double from) {
   const auto begin = static_cast<std::size_t>(std::ranges::lower_bound(times, from) - times.begin());
-  const double mean = std::accumulate(values.begin() + static_cast<std::ptrdiff_t>(begin), values.end(), 0.0) /
-                      static_cast<double>(values.size() - begin);
+  const double mean =
+      std::accumulate(values.begin() + static_cast<std::ptrdiff_t>(begin), values.end(), 0.0) /
+      static_cast<double>(values.size() - begin);
   double first = 0.0, last = 0.0;
   int crossings = 0;
   for (std::size_t i = begin + 1; i < values.size(); ++i) {
@@ -211,22 +218,27 @@ FigureResult figure_12(Runs& runs) {
     const Run& run = runs.of(asked(runs));
     const coupling::Motion& motion = run.asked.motions.runs.front().motion;
     const double K = motion.bushings.front().rotational_stiffness.z();
-    const double expected = std::sqrt(K / motion.bodies.front().properties.inertia(2, 2)) / (2.0 * std::numbers::pi);
+    const double expected =
+        std::sqrt(K / motion.bodies.front().properties.inertia(2, 2)) / (2.0 * std::numbers::pi);
     const auto [times, rates] = run.columns("time_s", "htv wz_rad_s");
-    const double found = frequency(times, rates, held_at + 0.3);  // 0.3 s: the joints that hold it have come to rest
+    const double found =
+        frequency(times, rates, held_at + 0.3);  // 0.3 s: the joints that hold it have come to rest
     result.table.rows.push_back({digits(K), digits(found), digits(expected)});
     result.rows.push_back({"", fmt::format("frequency of the roll, K_GF = {:g} N m/rad", K), "Hz",
                            "sqrt(K_GF/I)/(2 pi)", Kind::closed_form, expected, found + run.usable(),
                            Limit::relative(5e-3)});
   }
   const Run& base = runs.of(flight(runs));
-  const double by_wire = apart(runs.of(double_K_wire(runs)), base), by_gf = apart(runs.of(double_K_GF(runs)), base);
-  result.findings.push_back(fmt::format("Doubled, K_GF changes the roll rate by {} deg/s rms, K_wire by {} deg/s.",
-                                        digits(by_gf, 2), digits(by_wire, 2)));
+  const double by_wire = apart(runs.of(double_K_wire(runs)), base),
+               by_gf = apart(runs.of(double_K_GF(runs)), base);
+  result.findings.push_back(
+      fmt::format("Doubled, K_GF changes the roll rate by {} deg/s rms, K_wire by {} deg/s.",
+                  digits(by_gf, 2), digits(by_wire, 2)));
   result.rows.push_back(
       {"", "change of the roll rate by a doubled K_wire over that by a doubled K_GF, at most 1", "",
        "Honda et al., section 4.3: little effect", computation, 0.0, by_wire / by_gf,
-       Limit::absolute(1.0, "an upper bound for \"much larger effect\"; the value is a ratio of two changes")});
+       Limit::absolute(1.0,
+                       "an upper bound for \"much larger effect\"; the value is a ratio of two changes")});
   return result;
 }
 
@@ -276,11 +288,11 @@ FigureResult rate(Runs& runs) {
                    curve("numbers of Table 4", Origin::computed, start),
                    curve("fitted numbers", Origin::computed, fitted)};
   result.curves.front().scatter = flown.channels.at(channel).sigma.value_or(0.0);
-  result.findings.push_back(
-      fmt::format("rms difference from the record: {} deg/s with the numbers of Table 4, {} deg/s with the fitted "
-                  "ones; noise {} deg/s. Range: record {}, fitted {} deg/s.",
-                  digits(rms(start), 3), digits(rms(fitted), 3), digits(result.curves.front().scatter, 3),
-                  digits(swing(read), 3), digits(swing(fitted), 3)));
+  result.findings.push_back(fmt::format(
+      "rms difference from the record: {} deg/s with the numbers of Table 4, {} deg/s with the fitted "
+      "ones; noise {} deg/s. Range: record {}, fitted {} deg/s.",
+      digits(rms(start), 3), digits(rms(fitted), 3), digits(result.curves.front().scatter, 3),
+      digits(swing(read), 3), digits(swing(fitted), 3)));
   return result;
 }
 
@@ -289,21 +301,23 @@ FigureResult fitted_numbers(Runs& runs) {
   FigureResult result;
   result.table.columns = {"number", "unit", "fitted", "95 % from", "to"};
   for (const identification::TracedNumber& n : f.trace.base.numbers)
-    result.table.rows.push_back(
-        {n.key, n.unit, digits(n.value), n.lower ? digits(*n.lower) : "open", n.upper ? digits(*n.upper) : "open"});
-  result.findings.push_back(fmt::format("{} simulations; chi2 per degree of freedom {}.", f.trace.fit_simulations,
-                                        digits(f.trace.base.chi2_dof, 3)));
+    result.table.rows.push_back({n.key, n.unit, digits(n.value), n.lower ? digits(*n.lower) : "open",
+                                 n.upper ? digits(*n.upper) : "open"});
+  result.findings.push_back(fmt::format("{} simulations; chi2 per degree of freedom {}.",
+                                        f.trace.fit_simulations, digits(f.trace.base.chi2_dof, 3)));
   return result;
 }
 
 const Axis time{"time of the paper's clock", "s"}, rates{"angular velocity", "deg/s"};
 constexpr const char* group = "numbers of a capture from three rates of a flight";
 constexpr const char* flight_method =
-    "`data/records/flight.toml`: no telemetry is public. The record is synthetic, by full wires with known numbers; "
+    "`data/records/flight.toml`: no telemetry is public. The record is synthetic, by full wires with known "
+    "numbers; "
     "the model has strings. Three numbers are "
     "fitted to the first flight by all three rates. Roll is about the visitor's axis.";
 constexpr const char* second_method =
-    "`data/records/flight.toml`, second flight, of another drift: predicted with the numbers of the first, nothing "
+    "`data/records/flight.toml`, second flight, of another drift: predicted with the numbers of the first, "
+    "nothing "
     "fitted.";
 const auto one = [](const char* title) { return std::vector<Panel>{{title, time, rates}}; };
 const auto roll = [](const char* name, Case (*run)(Runs&), std::size_t panel) {
@@ -322,7 +336,8 @@ std::vector<Figure> declared_figures() {
       {"Fig. 5",
        "Contact force between wire and shaft",
        "A stretched wire without slack, fixed at both ends; linear for small displacements.",
-       "Eqs (1) and (2) as repaired from the garbled text, with K_wire of Table 4. Assumed: l = 90 mm, L = 87.5 mm.",
+       "Eqs (1) and (2) as repaired from the garbled text, with K_wire of Table 4. Assumed: l = 90 mm, L = "
+       "87.5 mm.",
        {{"Contact force", {"displacement", "mm"}, {"force", "N"}}},
        {},
        figure_5,
@@ -359,92 +374,96 @@ std::vector<Figure> declared_figures() {
 }
 
 std::vector<Figure> flight_figures() {
-  return {
-      {"Fig. 8",
-       "Angular velocity about the roll axis",
-       "The new parameters follow the telemetry better than the conventional ones; the simulated amplitude is much "
-       "smaller than the measured one.",
-       flight_method,
-       one("Roll rate, first flight"),
-       {},
-       rate<0, 2>,
-       group},
-      {"Fig. 9",
-       "Angular velocity about the pitch axis",
-       "As Fig. 8.",
-       flight_method,
-       one("Pitch rate, first flight"),
-       {},
-       rate<0, 0>,
-       group},
-      {"Fig. 10",
-       "Angular velocity about the yaw axis",
-       "As Fig. 8.",
-       flight_method,
-       one("Yaw rate, first flight"),
-       {},
-       rate<0, 1>,
-       group},
-      {"Fig. 11",
-       "Contact forces on the snare wires",
-       "Wire 1 strikes the shaft first, then wire 2; the shaft is tightened up at 29.2 s.",
-       "scenario `data/scenarios/ssrms_htv_capture.toml`. Assumed: a shaft at rest 20 mm off the axis, where the wires "
-       "come in this order. The clock is set so that the last wire is tight at 29.2 s.",
-       {{"Force on the shaft", time, {"force", "N"}}},
-       {{"wire 1", capture, "pin on snare::wire_1 normal_N", 0, 1.0, "time_s", clock_of_capture},
-        {"wire 2", capture, "pin on snare::wire_2 normal_N", 0, 1.0, "time_s", clock_of_capture},
-        {"wire 3", capture, "pin on snare::wire_3 normal_N", 0, 1.0, "time_s", clock_of_capture}},
-       figure_11},
-      {"Fig. 12",
-       "Roll rate by the stiffness of the fixture's base",
-       "K_GF sets the frequency of the roll; K_wire has little effect, above all in the early phase.",
-       "scenario `data/records/flight_scenario.toml`, end effector at rest, fixture held from 29.5 s on; 200 outputs a "
-       "second, since the paper's step of 0.05 s is near half a period of the roll.",
-       {{"Roll rate by K_GF", time, rates}, {"Roll rate by K_wire", time, rates}},
-       {roll("K_GF = 0.5e8 N m/rad", half_K_GF, 0), roll("1e8 N m/rad", flight, 0), roll("2e8 N m/rad", double_K_GF, 0),
-        roll("K_wire = 2.8e5 N/m", half_K_wire, 1), roll("5.55e5 N/m", flight, 1),
-        roll("11.1e5 N/m", double_K_wire, 1)},
-       figure_12},
-      {"Fig. 13",
-       "Angular velocity about the roll axis, second flight",
-       "With the key parameters of the first flight the second one is predicted: events and amplitudes agree in order.",
-       second_method,
-       one("Roll rate, second flight"),
-       {},
-       rate<1, 2>,
-       group},
-      {"Fig. 14",
-       "Angular velocity about the pitch axis, second flight",
-       "As Fig. 13.",
-       second_method,
-       one("Pitch rate, second flight"),
-       {},
-       rate<1, 0>,
-       group},
-      {"Fig. 15",
-       "Angular velocity about the yaw axis, second flight",
-       "As Fig. 13.",
-       second_method,
-       one("Yaw rate, second flight"),
-       {},
-       rate<1, 1>,
-       group}};
+  return {{"Fig. 8",
+           "Angular velocity about the roll axis",
+           "The new parameters follow the telemetry better than the conventional ones; the simulated "
+           "amplitude is much "
+           "smaller than the measured one.",
+           flight_method,
+           one("Roll rate, first flight"),
+           {},
+           rate<0, 2>,
+           group},
+          {"Fig. 9",
+           "Angular velocity about the pitch axis",
+           "As Fig. 8.",
+           flight_method,
+           one("Pitch rate, first flight"),
+           {},
+           rate<0, 0>,
+           group},
+          {"Fig. 10",
+           "Angular velocity about the yaw axis",
+           "As Fig. 8.",
+           flight_method,
+           one("Yaw rate, first flight"),
+           {},
+           rate<0, 1>,
+           group},
+          {"Fig. 11",
+           "Contact forces on the snare wires",
+           "Wire 1 strikes the shaft first, then wire 2; the shaft is tightened up at 29.2 s.",
+           "scenario `data/scenarios/ssrms_htv_capture.toml`. Assumed: a shaft at rest 20 mm off the axis, "
+           "where the wires "
+           "come in this order. The clock is set so that the last wire is tight at 29.2 s.",
+           {{"Force on the shaft", time, {"force", "N"}}},
+           {{"wire 1", capture, "pin on snare::wire_1 normal_N", 0, 1.0, "time_s", clock_of_capture},
+            {"wire 2", capture, "pin on snare::wire_2 normal_N", 0, 1.0, "time_s", clock_of_capture},
+            {"wire 3", capture, "pin on snare::wire_3 normal_N", 0, 1.0, "time_s", clock_of_capture}},
+           figure_11},
+          {"Fig. 12",
+           "Roll rate by the stiffness of the fixture's base",
+           "K_GF sets the frequency of the roll; K_wire has little effect, above all in the early phase.",
+           "scenario `data/records/flight_scenario.toml`, end effector at rest, fixture held from 29.5 s on; "
+           "200 outputs a "
+           "second, since the paper's step of 0.05 s is near half a period of the roll.",
+           {{"Roll rate by K_GF", time, rates}, {"Roll rate by K_wire", time, rates}},
+           {roll("K_GF = 0.5e8 N m/rad", half_K_GF, 0), roll("1e8 N m/rad", flight, 0),
+            roll("2e8 N m/rad", double_K_GF, 0), roll("K_wire = 2.8e5 N/m", half_K_wire, 1),
+            roll("5.55e5 N/m", flight, 1), roll("11.1e5 N/m", double_K_wire, 1)},
+           figure_12},
+          {"Fig. 13",
+           "Angular velocity about the roll axis, second flight",
+           "With the key parameters of the first flight the second one is predicted: events and amplitudes "
+           "agree in order.",
+           second_method,
+           one("Roll rate, second flight"),
+           {},
+           rate<1, 2>,
+           group},
+          {"Fig. 14",
+           "Angular velocity about the pitch axis, second flight",
+           "As Fig. 13.",
+           second_method,
+           one("Pitch rate, second flight"),
+           {},
+           rate<1, 0>,
+           group},
+          {"Fig. 15",
+           "Angular velocity about the yaw axis, second flight",
+           "As Fig. 13.",
+           second_method,
+           one("Yaw rate, second flight"),
+           {},
+           rate<1, 1>,
+           group}};
 }
 
 std::vector<Lost> lost() {
-  return {{"Figs. 1 to 4", "photographs and sketches; nothing is computed for them"},
-          {"Fig. 7", "flowchart of the optimisation; `snare fit` follows it"},
-          {"Table 2, the SSRMS",
-           "17.6 m and 1.8 t are printed; the shipped arm follows another published set of link data (1641 kg), "
-           "`data/arms/ssrms_like_1800kg.toml` has the printed mass"},
-          {"telemetry of both flights", "not public; Figs. 8 to 10 and 13 to 15 use synthetic records"},
-          {"fitted K_wire, K_GF and rate", "not printed, so that the fitted numbers cannot be compared"},
-          {"amplitude in roll that is too small",
-           "the telemetry is missing. What a giving attachment of the arm does to it: "
-           "`data/records/flight_attachment.toml`"},
-          {"readings of Fig. 6", "drawn only; the rate of Table 4 is compared"},
-          {"forces of Fig. 11", "drawn only; the order of the wires is compared"},
-          {"l and L of eq. (1), sizes of end effector and fixture, offset of the shaft", "not printed: assumed"}};
+  return {
+      {"Figs. 1 to 4", "photographs and sketches; nothing is computed for them"},
+      {"Fig. 7", "flowchart of the optimisation; `snare fit` follows it"},
+      {"Table 2, the SSRMS",
+       "17.6 m and 1.8 t are printed; the shipped arm follows another published set of link data (1641 kg), "
+       "`data/arms/ssrms_like_1800kg.toml` has the printed mass"},
+      {"telemetry of both flights", "not public; Figs. 8 to 10 and 13 to 15 use synthetic records"},
+      {"fitted K_wire, K_GF and rate", "not printed, so that the fitted numbers cannot be compared"},
+      {"amplitude in roll that is too small",
+       "the telemetry is missing. What a giving attachment of the arm does to it: "
+       "`data/records/flight_attachment.toml`"},
+      {"readings of Fig. 6", "drawn only; the rate of Table 4 is compared"},
+      {"forces of Fig. 11", "drawn only; the order of the wires is compared"},
+      {"l and L of eq. (1), sizes of end effector and fixture, offset of the shaft", "not printed: assumed"}};
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ std::vector<validation::Check> paper_checks(const std::filesystem::path& data) {
                         Runs runs(data);
                         std::vector<validation::Row> rows;
                         for (const Figure& figure : paper->figures) {
-                          if (figure.compute == nullptr || !std::string_view(figure.compared_in).empty()) continue;
+                          if (figure.compute == nullptr || !std::string_view(figure.compared_in).empty())
+                            continue;
                           const FigureResult result = made(*paper, figure, runs);
                           rows.insert(rows.end(), result.rows.begin(), result.rows.end());
                         }

@@ -30,8 +30,8 @@ struct Run {
 
   /// Two columns of the table that has `y`, in the units of their names. Throws std::out_of_range, naming both,
   /// if no table has them.
-  [[nodiscard]] std::pair<const std::vector<double>&, const std::vector<double>&> columns(const std::string& x,
-                                                                                          const std::string& y) const;
+  [[nodiscard]] std::pair<const std::vector<double>&, const std::vector<double>&> columns(
+      const std::string& x, const std::string& y) const;
   /// Time of the first touch of a contact [s]; NaN where it never touched.
   [[nodiscard]] double first_touch(std::size_t contact) const;
   /// 0, or NaN where the run ended early: added to a number of the run, it spoils the comparison. [-]

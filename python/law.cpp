@@ -60,10 +60,12 @@ const ForceTable& table_of(const DistilledLaw& law, const py::object& unloading)
 }
 
 Given slack_or_nominal(const DistilledLaw& law, const py::object& slack) {
-  return slack.is_none() ? Given{Numbers(py::float_(law.nominal_slack)), {}, false} : numbers_of(slack, "slack");
+  return slack.is_none() ? Given{Numbers(py::float_(law.nominal_slack)), {}, false}
+                         : numbers_of(slack, "slack");
 }
 
-Broadcast<3> points(const DistilledLaw& law, const py::object& d, const py::object& s, const py::object& slack) {
+Broadcast<3> points(const DistilledLaw& law, const py::object& d, const py::object& s,
+                    const py::object& slack) {
   return Broadcast<3>({numbers_of(d, "d"), numbers_of(s, "s"), slack_or_nominal(law, slack)});
 }
 
@@ -71,7 +73,8 @@ Broadcast<3> points(const DistilledLaw& law, const py::object& d, const py::obje
 void warn_if(bool continued) {
   if (!continued) return;
   const py::object category = py::module_::import("snare._core").attr("OutsideRange");
-  if (PyErr_WarnEx(category.ptr(), "outside the range of the law: continued linearly (see `in_range`)", 1) != 0)
+  if (PyErr_WarnEx(category.ptr(), "outside the range of the law: continued linearly (see `in_range`)", 1) !=
+      0)
     throw py::error_already_set();
 }
 
@@ -104,7 +107,9 @@ py::object stiffness(const ThisLaw& law, const py::object& d, const py::object& 
 }
 
 py::object in_range(const ThisLaw& law, const py::object& d, const py::object& s, const py::object& slack) {
-  return points(*law, d, s, slack).map<bool>([&](double x, double y, double z) { return law->in_range(x, y, z); });
+  return points(*law, d, s, slack).map<bool>([&](double x, double y, double z) {
+    return law->in_range(x, y, z);
+  });
 }
 
 bool beyond(const SimpleLaw& one, double d) {
@@ -121,8 +126,9 @@ py::object of_travel(const ThisSimple& one, const py::object& d, const py::objec
     if (beyond(*one, x)) {
       continued = true;
       if (what == Outside::refuse)
-        throw std::domain_error(fmt::format("travel of {:.6g} mm is outside the range of the law, {:.6g} to {:.6g} mm",
-                                            1e3 * x, 1e3 * one->travel[0], 1e3 * one->travel[1]));
+        throw std::domain_error(
+            fmt::format("travel of {:.6g} mm is outside the range of the law, {:.6g} to {:.6g} mm", 1e3 * x,
+                        1e3 * one->travel[0], 1e3 * one->travel[1]));
     }
     return ((*one->law).*number)(x);
   });
@@ -131,7 +137,9 @@ py::object of_travel(const ThisSimple& one, const py::object& d, const py::objec
 }
 
 py::object simple_in_range(const ThisSimple& one, const py::object& d) {
-  return Broadcast<1>({numbers_of(d, "d")}).map<bool>([&](double x) { return !std::isnan(x) && !beyond(*one, x); });
+  return Broadcast<1>({numbers_of(d, "d")}).map<bool>([&](double x) {
+    return !std::isnan(x) && !beyond(*one, x);
+  });
 }
 
 py::dict parameters_of(const ThisSimple& one) {
@@ -177,17 +185,19 @@ namespace {
 
 void add_simple_law(py::module_& module) {
   constexpr auto* default_outside = "extrapolate";
-  py::class_<SimpleLaw>(module, "SimpleLaw",
-                        "A law of a few numbers, fitted to the full wire at one position; found in Law.simple. Force, "
-                        "stiffness and energy are\n"
-                        "functions of the travel d [m]: a number or an array of any shape. Without contact (d < 0) "
-                        "they are 0. A force is never\n"
-                        "negative. Beyond the fitted travel it continues linearly with the warning OutsideRange; "
-                        "outside='refuse' raises\n"
-                        "ValueError instead.")
+  py::class_<SimpleLaw>(
+      module, "SimpleLaw",
+      "A law of a few numbers, fitted to the full wire at one position; found in Law.simple. Force, "
+      "stiffness and energy are\n"
+      "functions of the travel d [m]: a number or an array of any shape. Without contact (d < 0) "
+      "they are 0. A force is never\n"
+      "negative. Beyond the fitted travel it continues linearly with the warning OutsideRange; "
+      "outside='refuse' raises\n"
+      "ValueError instead.")
       .def_property_readonly("position", &get<&SimpleLaw::position, SimpleLaw>,
                              "s, of the pusher along the chord from the left mount [m].")
-      .def_property_readonly("name", &get<&SimpleLaw::name, SimpleLaw>, "As in law.json: 'quadratic', 'power_law', ...")
+      .def_property_readonly("name", &get<&SimpleLaw::name, SimpleLaw>,
+                             "As in law.json: 'quadratic', 'power_law', ...")
       .def_property_readonly("formula", &get<&SimpleLaw::formula, SimpleLaw>, "The law, for people.")
       .def_property_readonly("parameters", &parameters_of, "By name: (value, unit), in SI units.")
       .def_property_readonly("travel", &get<&SimpleLaw::travel, SimpleLaw>,
@@ -200,7 +210,8 @@ void add_simple_law(py::module_& module) {
            py::arg("outside") = default_outside, "dF/dd [N/m] at the travel d [m].")
       .def("energy", &of_travel<&coupling::SpringLaw::energy>, py::arg("d"), py::kw_only(),
            py::arg("outside") = default_outside, "Integral of the force from 0 to the travel d [m], in J.")
-      .def("in_range", &simple_in_range, py::arg("d"), "Whether the force at the travel d [m] needs no continuation.")
+      .def("in_range", &simple_in_range, py::arg("d"),
+           "Whether the force at the travel d [m] needs no continuation.")
       .def("__reduce__",
            [](const ThisSimple& one) {
              return py::make_tuple(py::module_::import("snare._laws").attr("simple_law"),
@@ -215,32 +226,39 @@ void add_law(py::module_& module) {
   constexpr auto* default_outside = "extrapolate";
   py::class_<DistilledLaw>(
       module, "Law",
-      "The force of one wire as a table over travel, position and slack, with the simple laws fitted to it.\n\n"
+      "The force of one wire as a table over travel, position and slack, with the simple laws fitted to "
+      "it.\n\n"
       "Law(file, case=0) reads a law.json; `distil` returns laws, too. Lengths are in m, forces in N.")
       .def(py::init(&from_file), py::arg("file"), py::arg("case") = 0)
       .def("force", &force, py::arg("d"), py::arg("s"), py::arg("slack") = py::none(), py::kw_only(),
            py::arg("outside") = default_outside, py::arg("unloading") = false,
-           "Force [N] on the pusher at travel d [m] from first touch, position s [m] along the chord from the left "
+           "Force [N] on the pusher at travel d [m] from first touch, position s [m] along the chord from "
+           "the left "
            "mount, and\n"
            "slack [m], length less span (None: the nominal one).\n\n"
-           "Numbers or arrays; shapes are broadcast as NumPy does, and the result has theirs; points that are masked "
+           "Numbers or arrays; shapes are broadcast as NumPy does, and the result has theirs; points that "
+           "are masked "
            "stay masked.\n"
            "Negative travel is no contact: 0. A force is never negative.\n"
-           "outside: what happens outside the table's range. 'extrapolate' continues linearly, with the warning "
+           "outside: what happens outside the table's range. 'extrapolate' continues linearly, with the "
+           "warning "
            "OutsideRange, and\n"
            "never falls along the travel; 'refuse' raises ValueError. `in_range` tells the points.\n"
            "unloading: on the way back from the end of the travel, where something dissipates.")
       .def("stiffness", &stiffness, py::arg("d"), py::arg("s"), py::arg("slack") = py::none(), py::kw_only(),
-           py::arg("outside") = default_outside, py::arg("unloading") = false, "dF/dd [N/m], arguments as of `force`.")
+           py::arg("outside") = default_outside, py::arg("unloading") = false,
+           "dF/dd [N/m], arguments as of `force`.")
       .def("in_range", &in_range, py::arg("d"), py::arg("s"), py::arg("slack") = py::none(),
            "Whether the force at these points needs no continuation; arguments as of `force`.")
       .def_property_readonly("title", &get<&DistilledLaw::title, DistilledLaw>, "Of the wire file.")
       .def_property_readonly(
           "span", [](const ThisLaw& law) { return law->loading->span(); }, "Distance of the mounts [m].")
       .def_property_readonly("travel", &interval<&DistilledLaw::travel>, "(from, to), the range of d [m].")
-      .def_property_readonly("position", &interval<&DistilledLaw::position>,
-                             "(from, to), the range of s [m]; the mirror image belongs to it where mounts are alike.")
-      .def_property_readonly("slack", &interval<&DistilledLaw::slack>, "(from, to), the range of the slack [m].")
+      .def_property_readonly(
+          "position", &interval<&DistilledLaw::position>,
+          "(from, to), the range of s [m]; the mirror image belongs to it where mounts are alike.")
+      .def_property_readonly("slack", &interval<&DistilledLaw::slack>,
+                             "(from, to), the range of the slack [m].")
       .def_property_readonly("nominal_slack", &get<&DistilledLaw::nominal_slack, DistilledLaw>,
                              "Length less span of the wire file [m].")
       .def_property_readonly("bound", &get<&DistilledLaw::bound, DistilledLaw>,
@@ -254,11 +272,13 @@ void add_law(py::module_& module) {
                              "The simple laws, a list of SimpleLaw.")
       .def("__reduce__",
            [](const ThisLaw& law) {
-             return py::make_tuple(py::module_::import("snare._laws").attr("law"), py::make_tuple(state_of(*law)));
+             return py::make_tuple(py::module_::import("snare._laws").attr("law"),
+                                   py::make_tuple(state_of(*law)));
            })
       .def("__repr__", [](const ThisLaw& law) {
         return fmt::format(
-            "<snare.Law '{}': travel {:.4g} to {:.4g} m, position {:.4g} to {:.4g} m, slack {:.4g} to {:.4g} m, "
+            "<snare.Law '{}': travel {:.4g} to {:.4g} m, position {:.4g} to {:.4g} m, slack {:.4g} to {:.4g} "
+            "m, "
             "within {:.3g} N>",
             law->title, law->travel[0], law->travel[1], law->position[0], law->position[1], law->slack[0],
             law->slack[1], law->bound);

@@ -85,7 +85,8 @@ class Broadcast {
           out[i] = std::apply(function, x);
           if constexpr (std::is_floating_point_v<Result>) {
             if (!std::isfinite(out[i]))
-              throw std::domain_error(fmt::format("at {}: the result is beyond all numbers", fmt::join(x, ", ")));
+              throw std::domain_error(
+                  fmt::format("at {}: the result is beyond all numbers", fmt::join(x, ", ")));
           }
         } catch (const std::domain_error& error) {
           if (shape_.empty()) throw;
@@ -94,7 +95,8 @@ class Broadcast {
       }
     }
     const pybind11::object ma = masked_ ? pybind11::object(numpy().attr("ma")) : pybind11::none();
-    if (shape_.empty()) return masked_ && mask_.data()[0] ? pybind11::object(ma.attr("masked")) : result.attr("item")();
+    if (shape_.empty())
+      return masked_ && mask_.data()[0] ? pybind11::object(ma.attr("masked")) : result.attr("item")();
     return masked_ ? ma.attr("array")(result, pybind11::arg("mask") = mask_) : pybind11::object(result);
   }
 

@@ -41,7 +41,8 @@ std::shared_ptr<const ForceTable> table(const ForceTable::Axes& axes, Vector nod
                                         bool mirrored) {
   require(is_axis(axes[0], 2) && is_axis(axes[1], 1) && is_axis(axes[2], 1) && span > 0.0 && scale > 0.0);
   require(nodes.size() == ForceTable::numbers_a_node * axes[0].size() * axes[1].size() * axes[2].size());
-  return std::make_shared<const ForceTable>(ForceTable::from_nodes(axes, std::move(nodes), span, scale, mirrored));
+  return std::make_shared<const ForceTable>(
+      ForceTable::from_nodes(axes, std::move(nodes), span, scale, mirrored));
 }
 
 /// The parts of a state as C++ values; a state of other parts is none.
@@ -65,8 +66,8 @@ py::tuple state_of(const scenario::SimpleLaw& law) {
 
 scenario::SimpleLaw simple_law_of(const py::tuple& state) {
   const auto [of_version, name, formula, span, position, length, stiffness, values, travel, error] =
-      parts<int, std::string, std::string, double, double, double, double, Vector, std::array<double, 2>, double>(
-          state);
+      parts<int, std::string, std::string, double, double, double, double, Vector, std::array<double, 2>,
+            double>(state);
   const std::size_t numbers = scenario::parameters_of_law(name).size();
   require(of_version == version && numbers > 0 && values.size() == numbers && span > 0.0 && position > 0.0 &&
           position < span && length > 0.0 && stiffness > 0.0 && travel[1] > 0.0);
@@ -86,17 +87,18 @@ py::tuple state_of(const scenario::DistilledLaw& law) {
   for (const scenario::SimpleLaw& one : law.simple) simple.append(state_of(one));
   return py::make_tuple(
       version, law.title,
-      py::make_tuple(array(t.axes()[0]), array(t.axes()[1]), array(t.axes()[2]), array(t.nodes()), unloading, t.span(),
-                     t.force_scale(), t.mirrored()),
+      py::make_tuple(array(t.axes()[0]), array(t.axes()[1]), array(t.axes()[2]), array(t.nodes()), unloading,
+                     t.span(), t.force_scale(), t.mirrored()),
       law.bound, law.force_range, law.travel, law.position, law.slack, law.nominal_slack,
-      py::make_tuple(law.wire.bending_stiffness, law.wire.axial_stiffness, law.wire.span, law.wire.radius), simple);
+      py::make_tuple(law.wire.bending_stiffness, law.wire.axial_stiffness, law.wire.span, law.wire.radius),
+      simple);
 }
 
 scenario::DistilledLaw distilled_law_of(const py::tuple& state) {
   using Range = std::array<double, 2>;
   const auto [of_version, title, tables, bound, force_range, travel, position, slack, nominal, wire, simple] =
-      parts<int, std::string, py::tuple, double, double, Range, Range, Range, double, std::array<double, 4>, py::list>(
-          state);
+      parts<int, std::string, py::tuple, double, double, Range, Range, Range, double, std::array<double, 4>,
+            py::list>(state);
   require(of_version == version);
   const auto [d, s, e, nodes, unloading, span, scale, mirrored] =
       parts<Vector, Vector, Vector, Vector, std::optional<Vector>, double, double, bool>(tables);

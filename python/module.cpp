@@ -39,7 +39,8 @@ PYBIND11_MODULE(_core, module) {
   static py::exception<snare::base::InputError> input_error(module, "InputError", PyExc_ValueError);
   input_error.attr("__module__") = "snare";
   input_error.doc() =
-      "A file or an override is wrong. The message has a line a problem; `problems` has them as dictionaries of\n"
+      "A file or an override is wrong. The message has a line a problem; `problems` has them as dictionaries "
+      "of\n"
       "file, line, key, value and requirement.";
   // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 asks for this signature
   py::register_exception_translator([](std::exception_ptr raised) {

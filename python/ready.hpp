@@ -25,7 +25,8 @@ struct type_caster<snare::python::Ready<T>> {
 
   bool load(handle source, bool /*convert*/) {
     if (!isinstance<T>(source)) return false;
-    const auto place = reinterpret_cast<instance*>(source.ptr())->get_value_and_holder(get_type_info(typeid(T)));
+    const auto place =
+        reinterpret_cast<instance*>(source.ptr())->get_value_and_holder(get_type_info(typeid(T)));
     if (!place.holder_constructed()) {
       const std::string kind = str(type::handle_of(source).attr("__name__"));
       throw type_error("this " + kind +

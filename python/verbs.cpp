@@ -2,6 +2,7 @@
 
 #include "base/files.hpp"
 #include "base/inputs.hpp"
+#include "base/result_folder.hpp"
 #include "base/toml_tree.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/motion_tracing/trace_records.hpp"
@@ -15,14 +16,12 @@
 #include "results/law_json.hpp"
 #include "results/motion_comparison.hpp"
 #include "results/motion_history.hpp"
-#include "results/motion_summary.hpp"
 #include "results/push_result.hpp"
 #include "results/record_json.hpp"
 #include "results/simulation.hpp"
 #include "results/static_comparison.hpp"
 #include "results/sweep_run.hpp"
 #include "results/trace_json.hpp"
-#include "results/warnings.hpp"
 #include "scenario/scenario.hpp"
 
 #include <fmt/format.h>
@@ -82,7 +81,8 @@ std::shared_ptr<const identification::Experiment> experiment_of(const Path& file
 py::tuple push(const Path& file, const Pairs& set, int threads, const py::object& progress) {
   const auto experiment = experiment_of(file, set);
   const auto pushed =
-      made([experiment](const results::Watch& watch) { return results::push(*experiment, watch); }, threads, progress);
+      made([experiment](const results::Watch& watch) { return results::push(*experiment, watch); }, threads,
+           progress);
   ColumnSink curves;
   results::give_curves(curves, experiment->series, pushed->predictions);
   return py::make_tuple(document_of(pushed->document), curves.take());
@@ -117,13 +117,14 @@ py::tuple traced(const Path& file, const Pairs& set, int threads, const py::obje
 }
 
 /// The same of records in time.
-py::tuple traced_records(const Path& file, const Pairs& set, int threads, const py::object& progress, bool effects) {
+py::tuple traced_records(const Path& file, const Pairs& set, int threads, const py::object& progress,
+                         bool effects) {
   struct Traced {
     identification::RecordTrace trace;
     json document;
   };
-  const auto records =
-      std::make_shared<const identification::RecordSet>(identification::read_records(file, overrides_of(set)));
+  const auto records = std::make_shared<const identification::RecordSet>(
+      identification::read_records(file, overrides_of(set)));
   const auto result = made(
       [records, effects](const results::Watch& watch) {
         identification::RecordTraceOptions watched;
@@ -134,8 +135,8 @@ py::tuple traced_records(const Path& file, const Pairs& set, int threads, const 
         };
         Traced one{identification::trace_records(*records, watched), {}};
         if (one.trace.report.usable()) {
-          one.document =
-              effects ? results::record_trace_json(*records, one.trace) : results::record_fit_json(*records, one.trace);
+          one.document = effects ? results::record_trace_json(*records, one.trace)
+                                 : results::record_fit_json(*records, one.trace);
         }
         return one;
       },
@@ -160,7 +161,8 @@ py::tuple fit(const Path& file, const Pairs& set, int threads, const py::object&
 }
 
 py::tuple distil(const Path& file, const Pairs& set, int threads, const py::object& progress) {
-  const auto wire = std::make_shared<const reduction::WireFile>(reduction::read_wire_file(file, overrides_of(set)));
+  const auto wire =
+      std::make_shared<const reduction::WireFile>(reduction::read_wire_file(file, overrides_of(set)));
   const auto distilled = made(
       [wire](const results::Watch& watch) {
         return reduction::distil(*wire, {}, [&watch](std::size_t finished, std::size_t wanted) {
@@ -170,13 +172,13 @@ py::tuple distil(const Path& file, const Pairs& set, int threads, const py::obje
       },
       threads, progress);
   if (!distilled->report.usable()) return py::make_tuple(py::none(), distilled->report.message);
-  json document = results::law_json(*wire, *distilled);
-  document["warnings"] = results::wire_warnings(*wire);
+  const json document = results::law_json(*wire, *distilled);
   return py::make_tuple(document_of(document), laws_of(document));
 }
 
 py::tuple simulate(const Path& file, const Pairs& set, int threads, const py::object& progress) {
-  const auto asked = std::make_shared<const scenario::Scenario>(scenario::read_scenario(file, overrides_of(set)));
+  const auto asked =
+      std::make_shared<const scenario::Scenario>(scenario::read_scenario(file, overrides_of(set)));
   struct Simulated {
     std::vector<results::MotionRecord> records;
     json summary;
@@ -186,19 +188,16 @@ py::tuple simulate(const Path& file, const Pairs& set, int threads, const py::ob
   const auto simulated = made(
       [asked](const results::Watch& watch) {
         Simulated one{results::simulate_all(asked->motions.runs, watch), {}};
-        one.summary = results::motion_summary(*asked, results::finished_motions(asked->motions, one.records).front(),
-                                              [&watch] { return watch.stopped(); });
+        one.summary = results::simulation_document(*asked, one.records, watch);
         return one;
       },
       threads, progress);
-  const std::vector<results::FinishedMotion> finished = results::finished_motions(motions, simulated->records);
+  const std::vector<results::FinishedMotion> finished =
+      results::finished_motions(motions, simulated->records);
   const results::FinishedMotion& run = finished.front();
-  json document = simulated->summary;
-  document["interrupted"] = results::left_undone(motions.runs, simulated->records);
-  document["warnings"] = results::motion_warnings(finished);
   results::give_history(history, run.asked.motion, run.samples);
   if (!motions.sensors.empty()) results::give_telemetry(telemetry, motions, run.samples);
-  return py::make_tuple(document_of(document), history.take(), telemetry.take());
+  return py::make_tuple(document_of(simulated->summary), history.take(), telemetry.take());
 }
 
 std::string schema_of(const Path& file) {
@@ -208,8 +207,8 @@ std::string schema_of(const Path& file) {
 }
 
 json compared_pushes(const Path& file, const Pairs& set, int threads, const py::object& progress) {
-  const auto comparison =
-      std::make_shared<const results::StaticComparison>(results::read_static_comparison(file, overrides_of(set)));
+  const auto comparison = std::make_shared<const results::StaticComparison>(
+      results::read_static_comparison(file, overrides_of(set)));
   const auto compared = made(
       [comparison](const results::Watch& watch) {
         std::vector<reduction::CaseComparison> done;
@@ -228,9 +227,11 @@ json compared_motions(const Path& file, const Pairs& set, int threads, const py:
   const scenario::Scenario asked = scenario::read_scenario(file, overrides_of(set));
   const auto comparison = std::make_shared<const results::MotionComparison>(
       results::with_every_model(file, overrides_of(set), asked.motions));
-  const auto records =
-      made([comparison](const results::Watch& watch) { return results::simulate_all(comparison->motions.runs, watch); },
-           threads, progress);
+  const auto records = made(
+      [comparison](const results::Watch& watch) {
+        return results::simulate_all(comparison->motions.runs, watch);
+      },
+      threads, progress);
   return results::comparison_json(asked, *comparison, *records);
 }
 
@@ -240,42 +241,44 @@ py::object compare(const Path& file, const Pairs& set, int threads, const py::ob
                             : compared_pushes(file, set, threads, progress));
 }
 
-/// The summary of a sweep, and a row a case. folder: where its journal is kept, empty: nowhere.
-py::tuple sweep(const Path& file, const Pairs& set, int threads, const py::object& progress, const Path& folder) {
-  /// A folder for as long as nobody else keeps one.
-  struct Folder {
-    Path path;
-    bool ours;
-    explicit Folder(const Path& given) : path(given), ours(given.empty()) {
-      if (ours) {
-        std::string name = (std::filesystem::temp_directory_path() / "snare-sweep-XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr)
-          throw std::system_error(errno, std::generic_category(), "cannot make " + name);
-        path = name;
-      } else {
-        if (std::filesystem::exists(path) && !std::filesystem::is_directory(path))
-          throw base::InputError({"", 0, "out", path.string(), "must be a folder, not a file"});
-        std::filesystem::create_directories(path);
-      }
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    ~Folder() {
-      std::error_code ignored;
-      if (ours) std::filesystem::remove_all(path, ignored);
-    }
-  };
+/// A folder in the system's place for temporary files, removed with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path_((std::filesystem::temp_directory_path() / "snare-sweep-XXXXXX").string()) {
+    if (::mkdtemp(path_.data()) == nullptr)
+      throw std::system_error(errno, std::generic_category(), "cannot make " + path_);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] Path path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// The summary of a sweep, and a row a case. folder: where its journal is kept; empty: in a temporary one.
+py::tuple sweep(const Path& file, const Pairs& set, int threads, const py::object& progress,
+                const Path& folder) {
   const auto study = std::make_shared<const results::SweepStudy>(file, overrides_of(set));
   if (study->sweep().histories && folder.empty())
     throw base::InputError({file.string(), 0, "histories", "", "must have a folder: call sweep with out"});
-  const auto kept = std::make_shared<const Folder>(folder);
+  const auto temporary = folder.empty() ? std::make_shared<const TemporaryFolder>() : nullptr;
+  const auto kept = std::make_shared<const base::ResultFolder>(
+      temporary ? temporary->path() : folder, std::vector<std::string>{"cases.journal", "histories.h5"},
+      base::ResultFolder::Asker{"out", "snare.sweep " + file.string()});
   const auto cases = std::make_shared<ColumnSink>();
-  const int wanted = threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int wanted =
+      threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const auto summary = made(
-      [study, kept, cases, wanted](const results::Watch& watch) {
-        study::Journal journal(kept->path / "cases.journal", study->identity(), study->count());
+      [study, temporary, kept, cases, wanted](const results::Watch& watch) {
+        study::Journal journal(kept->path() / "cases.journal", study->identity(), study->count());
         std::optional<results::SweepHistories> histories;
-        if (study->sweep().histories) histories.emplace(*study, kept->path);
+        if (study->sweep().histories) histories.emplace(*study, kept->path());
         const results::SweepEnd end = results::run_sweep_cases(
             *study, journal, {wanted, wanted, nullptr, {}, histories ? &*histories : nullptr}, watch);
         journal.flush();
@@ -299,7 +302,8 @@ void add_verbs(py::module_& module) {
                py::arg("progress"));
   };
   add("push", push, "Document of `snare push` and the columns of curves.csv.");
-  add("fit", fit, "fit.json and the columns of curves.csv; None and a message where the base model cannot be fitted.");
+  add("fit", fit,
+      "fit.json and the columns of curves.csv; None and a message where the base model cannot be fitted.");
   add("trace", trace, "trace.json and the columns of curves.csv; None and a message as of fit.");
   add("distil", distil, "law.json and its laws; None and a message where a curve could not be computed.");
   add("simulate", simulate, "summary.json and the columns of history.csv and telemetry.csv.");

@@ -95,7 +95,8 @@ void ask_python(Work& work, const py::object& progress) {
 
 }  // namespace
 
-void do_work(const std::function<void(const results::Watch&)>& body, int threads, const py::object& progress) {
+void do_work(const std::function<void(const results::Watch&)>& body, int threads,
+             const py::object& progress) {
   constexpr int most_threads = 1024;  // as --threads; what a system does not give would end the process
   if (threads < 0 || threads > most_threads)
     throw std::invalid_argument(fmt::format("threads = {}, must be from 0 to {}", threads, most_threads));

@@ -16,7 +16,8 @@ namespace snare::python {
 /// raises, the work is told to stop and is waited for `patience_s`; work that has not come to a point where it looks by then is
 /// left to end by itself, and the interrupt is raised at once. What the work reads must therefore belong to it.
 /// threads: of the work, 0: one a processor. Exceptions of the work are thrown here.
-void do_work(const std::function<void(const results::Watch&)>& work, int threads, const pybind11::object& progress);
+void do_work(const std::function<void(const results::Watch&)>& work, int threads,
+             const pybind11::object& progress);
 
 inline constexpr double glance_s = 0.05;
 inline constexpr double patience_s = 0.6;
@@ -29,8 +30,8 @@ template <class Make>
 auto made(const Make& make, int threads, const pybind11::object& progress) {
   using Result = decltype(make(results::Watch()));
   const auto result = std::make_shared<std::unique_ptr<Result>>();
-  do_work([make, result](const results::Watch& watch) { *result = std::make_unique<Result>(make(watch)); }, threads,
-          progress);
+  do_work([make, result](const results::Watch& watch) { *result = std::make_unique<Result>(make(watch)); },
+          threads, progress);
   return std::move(*result);
 }
 

@@ -28,7 +28,8 @@ double time_of(const Force& force, double end) {
     const auto begin = Clock::now();
     double sum = 0.0;
     for (std::size_t i = 0; i < timed_evaluations; ++i) {
-      sum += force(end * static_cast<double>((i * 7919) % timed_evaluations) / static_cast<double>(timed_evaluations));
+      sum += force(end * static_cast<double>((i * 7919) % timed_evaluations) /
+                   static_cast<double>(timed_evaluations));
     }
     sink = sum;
     const std::chrono::duration<double> took = Clock::now() - begin;
@@ -74,8 +75,9 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
   coupling::PushOptions options;
   options.elements = settings.elements;
   const auto begin = Clock::now();
-  const coupling::PushCurve curve = settings.extrapolate ? coupling::solve_push_extrapolated(test, options).curve
-                                                         : coupling::solve_push(test, options);
+  const coupling::PushCurve curve = settings.extrapolate
+                                        ? coupling::solve_push_extrapolated(test, options).curve
+                                        : coupling::solve_push(test, options);
   const std::chrono::duration<double> took = Clock::now() - begin;
   result.report = curve.report;
   ModelResult full;
@@ -89,7 +91,8 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
       full.force.push_back(0.0);
       continue;
     }
-    while (at < curve.points.size() && curve.points[at].travel != d) ++at;  // the path may pass points in between
+    while (at < curve.points.size() && curve.points[at].travel != d)
+      ++at;  // the path may pass points in between
     if (at == curve.points.size()) break;
     full.force.push_back(curve.points[at++].force);
   }
@@ -125,9 +128,9 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
     add(name, parameters, range, [&](double d) { return law.force(d); });
   };
   // The table's line along the travel: the knots that its size gives.
-  const std::vector<std::size_t> chosen =
-      place_knots(store.travel(), {store.at({store.folded(place.position), one.wire.nominal_slack()}).loading},
-                  static_cast<std::size_t>(settings.points[0]));
+  const std::vector<std::size_t> chosen = place_knots(
+      store.travel(), {store.at({store.folded(place.position), one.wire.nominal_slack()}).loading},
+      static_cast<std::size_t>(settings.points[0]));
   std::vector<double> knots, values, slopes;
   for (const std::size_t i : chosen) {
     knots.push_back(store.travel()[i]);
@@ -135,7 +138,8 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
     slopes.push_back(place.full.slope(knots.back()));
   }
   const numerics::HermiteCurve spline(knots, values, numerics::monotone_slopes(knots, values, slopes));
-  add("spline_table", 2 * static_cast<int>(knots.size()), one.wire.travel, [&](double d) { return spline.value(d); });
+  add("spline_table", 2 * static_cast<int>(knots.size()), one.wire.travel,
+      [&](double d) { return spline.value(d); });
   if (place.load_unload) {
     const LoadUnloadLaw& law = place.load_unload->law;
     LoadUnloadState state;
@@ -150,7 +154,8 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
   const coupling::LawPlace where{t.mount.span, place.position, t.wire.length, t.wire.bending_stiffness()};
   Eigen::VectorXd published(2);
   published << honda_half_wire_stiffness * 0.5 * t.wire.length, 0.0;
-  add_spring("stretched_wire_published", 1, one.wire.travel, *coupling::stretched_wire_law(where)->with(published));
+  add_spring("stretched_wire_published", 1, one.wire.travel,
+             *coupling::stretched_wire_law(where)->with(published));
   for (const GivenLaw& law : one.given) add(law.name, law.parameters, law.range, law.force);
   return result;
 }

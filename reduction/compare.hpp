@@ -20,7 +20,7 @@ struct GivenLaw {
 /// One push on which the models are compared.
 struct StaticCase {
   std::string name;
-  WireCase wire;                 ///< one position (law_positions.front()), the nominal slack, travel to the largest
+  WireCase wire;  ///< one position (law_positions.front()), the nominal slack, travel to the largest
   std::vector<double> travel;    ///< in the order visited [m]
   std::vector<double> measured;  ///< force at these travels [N]; empty: none
   std::vector<GivenLaw> given;

@@ -21,22 +21,26 @@ namespace snare::reduction {
 namespace {
 
 /// Everything that a curve depends on but its place, as text.
-std::string identity(const WireCase& wire, const DistilSettings& settings, const std::vector<double>& travel) {
+std::string identity(const WireCase& wire, const DistilSettings& settings,
+                     const std::vector<double>& travel) {
   const coupling::PushProblem& t = wire.test;
   std::string text = fmt::format(
-      "EI {} EA {} kappa {} GJ {} span {} mount {} {} radius {} mu {} machine {} {} turn {} mode {} plane {} g {} {} "
+      "EI {} EA {} kappa {} GJ {} span {} mount {} {} radius {} mu {} machine {} {} turn {} mode {} plane {} "
+      "g {} {} "
       "{} rho {} elements {} {}",
-      t.wire.bending_stiffness(), t.wire.axial_stiffness(), t.wire.natural_curvature, t.wire.torsional_stiffness(),
-      t.mount.span, static_cast<int>(t.mount.kind), t.mount.support_radius, t.pusher.radius, t.pusher.friction,
-      t.pusher.compliance, static_cast<int>(t.pusher.direction), t.pusher.misalignment, t.bulge.mode, t.bulge.plane,
-      t.gravity[0], t.gravity[1], t.gravity[2], t.wire.mass_per_length(), settings.elements, settings.extrapolate);
+      t.wire.bending_stiffness(), t.wire.axial_stiffness(), t.wire.natural_curvature,
+      t.wire.torsional_stiffness(), t.mount.span, static_cast<int>(t.mount.kind), t.mount.support_radius,
+      t.pusher.radius, t.pusher.friction, t.pusher.compliance, static_cast<int>(t.pusher.direction),
+      t.pusher.misalignment, t.bulge.mode, t.bulge.plane, t.gravity[0], t.gravity[1], t.gravity[2],
+      t.wire.mass_per_length(), settings.elements, settings.extrapolate);
   const auto add = [&](const char* name, const std::optional<double>& value) {
     if (value) text += fmt::format(" {} {}", name, *value);
   };
   add("kt", t.mount.translational_stiffness);
   add("kr", t.mount.rotational_stiffness);
   for (const std::size_t k : {0, 1}) {
-    text += fmt::format(" {} {}", t.mount.own_translational_compliance[k], t.mount.own_rotational_compliance[k]);
+    text +=
+        fmt::format(" {} {}", t.mount.own_translational_compliance[k], t.mount.own_rotational_compliance[k]);
   }
   add("slip", t.mount.slip_tension);
   if (t.mount.slip_tension)
@@ -60,8 +64,8 @@ void append(std::string& text, const std::vector<double>& values) {
 
 /// One line of the journal: identity, place, curve, and the hash of all that.
 std::string journal_line(const std::string& identity, const CurvePlace& place, const PushedCurve& curve) {
-  std::string text = fmt::format("{} {} {} {} {} {}", identity, place.position, place.slack, curve.discretisation_error,
-                                 curve.largest_strain, curve.dissipated);
+  std::string text = fmt::format("{} {} {} {} {} {}", identity, place.position, place.slack,
+                                 curve.discretisation_error, curve.largest_strain, curve.dissipated);
   append(text, curve.loading);
   append(text, curve.unloading);
   return fmt::format("{} {:016x}\n", text, base::fingerprint(text));
@@ -117,8 +121,9 @@ void CurveStore::read_journal() {
     const std::size_t points = travel_.size();
     if (n.size() < points + 7 || n[5] != static_cast<double>(points)) continue;
     const auto unloading = n.begin() + static_cast<std::ptrdiff_t>(points) + 7;
-    curves_.emplace(CurvePlace{n[0], n[1]},
-                    PushedCurve{{n.begin() + 6, unloading - 1}, {unloading, n.end()}, n[2], n[3], n[4], true, {}});
+    curves_.emplace(
+        CurvePlace{n[0], n[1]},
+        PushedCurve{{n.begin() + 6, unloading - 1}, {unloading, n.end()}, n[2], n[3], n[4], true, {}});
   }
 }
 
@@ -168,18 +173,19 @@ PushedCurve CurveStore::solve(const CurvePlace& place) const {
       break;
     }
     force.push_back(points[i].force);
-    curve.largest_strain = std::max(curve.largest_strain, points[i].largest_tension / test.wire.axial_stiffness());
+    curve.largest_strain =
+        std::max(curve.largest_strain, points[i].largest_tension / test.wire.axial_stiffness());
     curve.dissipated = points[i].dissipated;
     if (i < solution.discretisation_error.size())
       curve.discretisation_error = std::max(curve.discretisation_error, solution.discretisation_error[i]);
   }
   curve.complete = force.size() == test.travel.size();
   if (!curve.complete) {
-    const std::string reason =
-        !stable ? fmt::format("the wire becomes unstable at a travel of {:.4g} mm", 1e3 * test.travel[force.size()])
-                : solution.curve.report.message;
-    curve.stopped =
-        fmt::format("at s = {:.4g} mm and a slack of {:.4g} mm: {}", 1e3 * place.position, 1e3 * place.slack, reason);
+    const std::string reason = !stable ? fmt::format("the wire becomes unstable at a travel of {:.4g} mm",
+                                                     1e3 * test.travel[force.size()])
+                                       : solution.curve.report.message;
+    curve.stopped = fmt::format("at s = {:.4g} mm and a slack of {:.4g} mm: {}", 1e3 * place.position,
+                                1e3 * place.slack, reason);
   }
   const std::size_t up = std::min(force.size(), travel_.size());
   curve.loading.assign(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(up));
@@ -189,7 +195,8 @@ PushedCurve CurveStore::solve(const CurvePlace& place) const {
   return curve;
 }
 
-numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places, const SamplingObserver& observer) {
+numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places,
+                                         const SamplingObserver& observer) {
   std::vector<CurvePlace> wanted;
   for (CurvePlace place : places) {
     place.position = folded(place.position);
@@ -208,7 +215,8 @@ numerics::SolveReport CurveStore::sample(const std::vector<CurvePlace>& places, 
     ++finished;
     if (journal && curve.complete) {
       const std::string line = journal_line(identity_, wanted[k], curve);
-      if (std::fwrite(line.data(), 1, line.size(), journal.get()) != line.size() || std::fflush(journal.get()) != 0) {
+      if (std::fwrite(line.data(), 1, line.size(), journal.get()) != line.size() ||
+          std::fflush(journal.get()) != 0) {
         give_up_journal();
         journal.reset();
       }

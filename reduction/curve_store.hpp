@@ -24,8 +24,9 @@ struct CurvePlace {
 
 /// The full wire's force as it is pushed through the store's travels. Dissipative wires are loaded to the end of the travel and unloaded.
 struct PushedCurve {
-  std::vector<double> loading;        ///< force [N], one a travel
-  std::vector<double> unloading;      ///< on the way back, at the same travels; empty where nothing dissipates [N]
+  std::vector<double> loading;  ///< force [N], one a travel
+  std::vector<double>
+      unloading;  ///< on the way back, at the same travels; empty where nothing dissipates [N]
   double discretisation_error = 0.0;  ///< largest estimate over the curve [N]
   double largest_strain = 0.0;        ///< of the wire [-]
   double dissipated = 0.0;            ///< by friction on the pusher over load and unload [J]

@@ -11,11 +11,13 @@ constexpr int stiffness_points = 40;
 constexpr int map_slacks = 17;
 constexpr int map_travels = 60;
 
-RecordedLaw record(const numerics::HermiteCurve& full, double offset, const std::vector<std::size_t>& fit_at) {
+RecordedLaw record(const numerics::HermiteCurve& full, double offset,
+                   const std::vector<std::size_t>& fit_at) {
   std::vector<double> force;
   for (const double d : full.knots()) force.push_back(d > offset ? full.value(d - offset) : 0.0);
   const numerics::HermiteCurve recorded(full.knots(), force);
-  return {offset, fit_law(coupling::quadratic_law(), recorded, fit_at), stiffness_curve(recorded, stiffness_points)};
+  return {offset, fit_law(coupling::quadratic_law(), recorded, fit_at),
+          stiffness_curve(recorded, stiffness_points)};
 }
 
 }  // namespace
@@ -39,7 +41,8 @@ numerics::SolveReport fit_places(CurveStore& store, std::vector<DistilledPlace>&
       if (law.values.size() > 0) place.laws.push_back(std::move(law));
     }
     place.stiffness = stiffness_curve(place.full, stiffness_points);
-    if (!wire.law_offsets.empty()) place.recorded = record(place.full, wire.law_offsets[places.size()], fit_at);
+    if (!wire.law_offsets.empty())
+      place.recorded = record(place.full, wire.law_offsets[places.size()], fit_at);
     if (!curve.unloading.empty()) {
       const numerics::HermiteCurve back(store.travel(), curve.unloading);
       place.dissipation = dissipation(place.full, back);
@@ -77,8 +80,8 @@ numerics::SolveReport distil_impacts(const WireCase& wire, const ImpactSettings&
 
 }  // namespace
 
-Distillation distil(const WireFile& file, const std::filesystem::path& journal, const SamplingObserver& observer,
-                    const JournalTrouble& trouble) {
+Distillation distil(const WireFile& file, const std::filesystem::path& journal,
+                    const SamplingObserver& observer, const JournalTrouble& trouble) {
   Distillation result;
   for (const WireCase& wire : file.cases) {
     CurveStore store(wire, file.settings, sampling_travel(wire, file.settings), journal, trouble);

@@ -14,8 +14,8 @@ namespace snare::reduction {
 
 /// What a machine would have recorded whose displacement is not zero at first touch: no force before it.
 struct RecordedLaw {
-  double offset = 0.0;       ///< displacement at first touch [m]
-  FittedLaw quadratic;       ///< over the record from 0 to the end of the travel: as fits of records are published
+  double offset = 0.0;  ///< displacement at first touch [m]
+  FittedLaw quadratic;  ///< over the record from 0 to the end of the travel: as fits of records are published
   StiffnessCurve stiffness;  ///< F over the recorded displacement
 };
 

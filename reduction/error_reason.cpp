@@ -27,13 +27,15 @@ struct Way {
   VectorXd travel, wire, model;
 };
 
-Way way_out(const std::vector<double>& travel, const std::vector<double>& wire, const std::vector<double>& model) {
+Way way_out(const std::vector<double>& travel, const std::vector<double>& wire,
+            const std::vector<double>& model) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < travel.size(); ++i) {
     if (chosen.empty() || travel[i] > travel[chosen.back()]) chosen.push_back(i);
   }
   Way way;
-  for (VectorXd* v : {&way.travel, &way.wire, &way.model}) v->resize(static_cast<Eigen::Index>(chosen.size()));
+  for (VectorXd* v : {&way.travel, &way.wire, &way.model})
+    v->resize(static_cast<Eigen::Index>(chosen.size()));
   for (Eigen::Index k = 0; k < way.travel.size(); ++k) {
     const std::size_t i = chosen[static_cast<std::size_t>(k)];
     way.travel[k] = travel[i];
@@ -84,18 +86,20 @@ std::string error_reason(const std::vector<double>& travel, const std::vector<do
     std::string words;
   };
   std::vector<Reason> reasons;
-  const double wires = way.model.squaredNorm() > 0.0 ? way.model.dot(way.wire) / way.model.squaredNorm() : 0.0;
+  const double wires =
+      way.model.squaredNorm() > 0.0 ? way.model.dot(way.wire) / way.model.squaredNorm() : 0.0;
   if (wires > 0.0) {
     reasons.push_back(
         {rms(wires * way.model - way.wire),
-         wires < 1.0 ? fmt::format("too stiff: {:.3g} times the force of the wire at the same travel", 1.0 / wires)
-                     : fmt::format("too soft: {:.3g} of the force of the wire at the same travel", 1.0 / wires)});
+         wires < 1.0
+             ? fmt::format("too stiff: {:.3g} times the force of the wire at the same travel", 1.0 / wires)
+             : fmt::format("too soft: {:.3g} of the force of the wire at the same travel", 1.0 / wires)});
   }
   const auto [shift, left] = best_shift(way);
-  reasons.push_back({left, fmt::format("its force comes {:.2g} mm of travel too {}", std::abs(shift) / base::mm,
-                                       shift > 0.0 ? "late" : "early")});
-  reasons.push_back(
-      {rms(off.array() - off.mean()), fmt::format("{:.3g} N too much{}", std::abs(off.mean()), " everywhere")});
+  reasons.push_back({left, fmt::format("its force comes {:.2g} mm of travel too {}",
+                                       std::abs(shift) / base::mm, shift > 0.0 ? "late" : "early")});
+  reasons.push_back({rms(off.array() - off.mean()),
+                     fmt::format("{:.3g} N too much{}", std::abs(off.mean()), " everywhere")});
   if (off.mean() < 0.0) reasons.back().words = fmt::format("{:.3g} N too little everywhere", -off.mean());
   const auto best = std::ranges::min_element(reasons, {}, &Reason::left);
   if (best->left <= most_left * before) return best->words;

@@ -24,7 +24,8 @@ std::string filled(std::string_view source, const Replacements& replacements) {
   return text;
 }
 
-std::string number_list(const std::vector<double>& values, std::size_t per_line, std::string_view line_break) {
+std::string number_list(const std::vector<double>& values, std::size_t per_line,
+                        std::string_view line_break) {
   std::string text;
   for (std::size_t i = 0; i < values.size(); ++i)
     text += fmt::format("{}{}", i == 0 ? "" : i % per_line == 0 ? line_break : ", ", values[i]);
@@ -81,8 +82,8 @@ std::vector<ExportedLaw> exported_laws(const DistilledPlace& place, const std::s
   for (const FittedLaw& law : place.laws) {
     const coupling::RangedLaw ranged = law.ranged();
     all.push_back({law.form->name() + "_" + position_name(place.position),
-                   fmt::format("{}, largest error {:.3g} N of {:.3g} N", law.form->formula(), law.error.largest_force,
-                               law.error.force_range),
+                   fmt::format("{}, largest error {:.3g} N of {:.3g} N", law.form->formula(),
+                               law.error.largest_force, law.error.force_range),
                    {{"end", fmt::format("{}", ranged.end())},
                     {"end_force", fmt::format("{}", ranged.end_force())},
                     {"end_stiffness", fmt::format("{}", ranged.end_stiffness())},

@@ -15,7 +15,8 @@ namespace snare::reduction {
 namespace {
 
 constexpr double start_distance = 1e-4;  // of the pusher from first touch [m]
-constexpr double most_periods = 40.0;    // half periods of mass and secant stiffness within which it must have left
+constexpr double most_periods =
+    40.0;  // half periods of mass and secant stiffness within which it must have left
 constexpr int steps_a_half_period = 2000;
 constexpr int samples_a_half_period = 200;
 
@@ -73,7 +74,8 @@ LawRebound rebound(const numerics::HermiteCurve& law, double damping, double mas
   return result;  // creeps back without end
 }
 
-double damping_of_restitution(const numerics::HermiteCurve& law, double restitution, double mass, double speed) {
+double damping_of_restitution(const numerics::HermiteCurve& law, double restitution, double mass,
+                              double speed) {
   if (rebound(law, 0.0, mass, speed).restitution <= restitution) return 0.0;
   double high = 1e-3 * mass / half_period(law, mass, speed);
   double low = 0.0;
@@ -91,7 +93,8 @@ double damping_of_restitution(const numerics::HermiteCurve& law, double restitut
 namespace {
 
 /// A body whose centre of mass is on the pusher's axis moves along the push towards the wire at rest.
-coupling::Motion meeting(const coupling::PushProblem& test, const ImpactSettings& settings, double speed, double side) {
+coupling::Motion meeting(const coupling::PushProblem& test, const ImpactSettings& settings, double speed,
+                         double side) {
   wire::RodInMotion rod = wire::rod_in_motion(test.wire, test.mount.span, settings.elements);
   const auto end = test.mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp
                                                                : wire::SpatialEnd::Kind::twisting_pin;
@@ -99,7 +102,8 @@ coupling::Motion meeting(const coupling::PushProblem& test, const ImpactSettings
   rod.damping = settings.damping;
   const Eigen::Matrix3Xd rest = coupling::resting_wire(rod);
   const double wire_radius = 0.5 * test.wire.diameter;
-  const double touch = scenario::first_touch(rest, test.pusher.radius + wire_radius, side).value(test.contact_position);
+  const double touch =
+      scenario::first_touch(rest, test.pusher.radius + wire_radius, side).value(test.contact_position);
   coupling::Motion motion;
   motion.gravity = {test.gravity[0], test.gravity[1], test.gravity[2]};
   motion.wires.push_back({"wire", rod, rest, {}, {}});
@@ -159,16 +163,17 @@ ImpactDamping distil_impact(const coupling::PushProblem& test, const ImpactSetti
   result.speed = speed;
   bool left = false;
   double farthest = 0.0;
-  const coupling::MotionResult run = coupling::simulate(motion, options, [&](const coupling::MotionSample& s) {
-    const multibody::RigidBodyState& body = s.bodies.front();
-    const double way = side * (body.position.y() - start);
-    farthest = std::max(farthest, way);
-    // Behind where it came from and going: the wire no longer reaches it.
-    left = way < 0.0 && side * body.velocity.y() < 0.0;
-    if (!left) return false;
-    result.restitution = -side * body.velocity.y() / speed;
-    return true;
-  });
+  const coupling::MotionResult run =
+      coupling::simulate(motion, options, [&](const coupling::MotionSample& s) {
+        const multibody::RigidBodyState& body = s.bodies.front();
+        const double way = side * (body.position.y() - start);
+        farthest = std::max(farthest, way);
+        // Behind where it came from and going: the wire no longer reaches it.
+        left = way < 0.0 && side * body.velocity.y() < 0.0;
+        if (!left) return false;
+        result.restitution = -side * body.velocity.y() / speed;
+        return true;
+      });
   if (!run.report.usable() && !left) {
     report.termination = run.report.termination;
     report.message = run.report.message;

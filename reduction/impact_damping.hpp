@@ -21,12 +21,13 @@ struct ImpactSettings {
 
 /// One impact on the full wire, and the dashpot that lets a law lose as much.                        theory.md (R.11)
 struct ImpactDamping {
-  double speed = 0.0;            ///< of approach [m/s]
-  double restitution = 0.0;      ///< speed of leaving over that of approach [-]
-  double integrator_loss = 0.0;  ///< of energy, over that of the impact: to be small beside 1 - restitution^2 [-]
-  double peak_force = 0.0;       ///< of the full wire [N]
-  double largest_travel = 0.0;   ///< [m]
-  double duration = 0.0;         ///< from first touch to the last parting [s]
+  double speed = 0.0;        ///< of approach [m/s]
+  double restitution = 0.0;  ///< speed of leaving over that of approach [-]
+  double integrator_loss =
+      0.0;                  ///< of energy, over that of the impact: to be small beside 1 - restitution^2 [-]
+  double peak_force = 0.0;  ///< of the full wire [N]
+  double largest_travel = 0.0;  ///< [m]
+  double duration = 0.0;        ///< from first touch to the last parting [s]
   /// c of F = L(d) + c d' with the same restitution [N s/m]; empty where the impact goes beyond the law's range, or
   /// does not come back in its time.
   std::optional<double> damping;
@@ -42,11 +43,12 @@ struct LawRebound {
 
 /// m d'' = -max(0, L(d) + c d') from d = 0 at the given speed until d = 0 again. Classical Runge-Kutta, some thousand
 /// steps. mass > 0 [kg], speed > 0 [m/s], damping >= 0 [N s/m]. Beyond its last knot L goes on as there.
-[[nodiscard]] LawRebound rebound(const numerics::HermiteCurve& law, double damping, double mass, double speed);
+[[nodiscard]] LawRebound rebound(const numerics::HermiteCurve& law, double damping, double mass,
+                                 double speed);
 
 /// The c [N s/m] of which `rebound` has the restitution asked [-], by bisection to 1e-10 of itself; 0 where no c loses as little.
-[[nodiscard]] double damping_of_restitution(const numerics::HermiteCurve& law, double restitution, double mass,
-                                            double speed);
+[[nodiscard]] double damping_of_restitution(const numerics::HermiteCurve& law, double restitution,
+                                            double mass, double speed);
 
 /// Simulates the impact at one speed [m/s] and finds the dashpot of it for the law `loading` of the same position.
 /// `test`: wire, mounts, pusher and position; its friction acts. The wire must be elastic and naturally straight

@@ -193,13 +193,14 @@ Function of_law(const ExportedLaw& law, const Dialect& dialect) {
 Function load_unload(const DistilledCase& one, const DistilledPlace& place, const Dialect& dialect) {
   Replacements numbers = load_unload_numbers(one, place);
   numbers.emplace_back("p", dialect.own);
-  return {"load_unload_" + position_name(place.position), "double d, double* branch, double* last", "d, branch, last",
-          dialect.own + "travel_in_range(d)", filled(load_unload_body, numbers)};
+  return {"load_unload_" + position_name(place.position), "double d, double* branch, double* last",
+          "d, branch, last", dialect.own + "travel_in_range(d)", filled(load_unload_body, numbers)};
 }
 
 std::string load_unload_words(const DistilledPlace& place) {
-  return fmt::format("load and unload; its memory is 1 and 0 at first; largest error on the way back {:.3g} N",
-                     place.load_unload->largest_error);
+  return fmt::format(
+      "load and unload; its memory is 1 and 0 at first; largest error on the way back {:.3g} N",
+      place.load_unload->largest_error);
 }
 
 std::string prefix(const Dialect& dialect) {
@@ -210,8 +211,8 @@ std::string definitions(const DistilledCase& one, const Dialect& dialect) {
   const coupling::ForceTable& table = *one.table.loading;
   std::string text;
   const auto array = [&](const char* name, const std::vector<double>& values) {
-    text += fmt::format("{} double {}[] = {{\n  {}}};\n", dialect.cpp ? "inline constexpr" : "static const", name,
-                        number_list(values));
+    text += fmt::format("{} double {}[] = {{\n  {}}};\n", dialect.cpp ? "inline constexpr" : "static const",
+                        name, number_list(values));
   };
   array("knots_travel", table.axes()[0]);
   array("knots_position", table.axes()[1]);
@@ -230,7 +231,8 @@ std::string definitions(const DistilledCase& one, const Dialect& dialect) {
     for (const ExportedLaw& law : exported_laws(place, prefix(dialect)))
       text += "\n" + comment(law.words) + definition(of_law(law, dialect), dialect);
     if (place.load_unload)
-      text += "\n" + comment(load_unload_words(place)) + definition(load_unload(one, place, dialect), dialect);
+      text +=
+          "\n" + comment(load_unload_words(place)) + definition(load_unload(one, place, dialect), dialect);
   }
   return text;
 }
@@ -255,21 +257,25 @@ std::string cpp_header(const DistilledCase& one, const std::string& title, const
 std::string c_header(const DistilledCase& one, const std::string& title, const std::string& name) {
   const Dialect dialect = c_dialect(name);
   std::string guard = (name.empty() ? "snare_law" : name) + "_h";
-  std::ranges::transform(guard, guard.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::ranges::transform(guard, guard.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   std::string text = head(one, title);
   text += fmt::format("#ifndef {0}\n#define {0}\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n", guard);
   text +=
       comment(
-          "1 within the range; 0 where a force is continued linearly. The functions with _or_nan give no number "
+          "1 within the range; 0 where a force is continued linearly. The functions with _or_nan give no "
+          "number "
           "there.") +
-      fmt::format("int {0}in_range(double d, double position, double slack);\nint {0}travel_in_range(double d);\n\n",
-                  dialect.own) +
+      fmt::format(
+          "int {0}in_range(double d, double position, double slack);\nint {0}travel_in_range(double d);\n\n",
+          dialect.own) +
       comment(
-          "force [N] at travel d, position and slack [m]; force_unloading: the way back from the end of the travel");
+          "force [N] at travel d, position and slack [m]; force_unloading: the way back from the end of the "
+          "travel");
   for (const Function& f : of_tables(one, dialect)) text += declaration(f, dialect);
   for (const DistilledPlace& place : one.places) {
-    text +=
-        "\n" + comment(fmt::format("simple laws at s = {:.6g} mm: force [N] at travel d [m]", 1e3 * place.position));
+    text += "\n" + comment(fmt::format("simple laws at s = {:.6g} mm: force [N] at travel d [m]",
+                                       1e3 * place.position));
     for (const ExportedLaw& law : exported_laws(place, prefix(dialect)))
       text += declaration(of_law(law, dialect), dialect);
     if (place.load_unload)

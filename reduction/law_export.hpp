@@ -17,11 +17,14 @@ namespace snare::reduction {
 // the beginning of every name, before an underscore (nothing if it is empty).
 
 /// law.hpp, header only, C++17.
-[[nodiscard]] std::string cpp_header(const DistilledCase& one, const std::string& title, const std::string& name = "");
+[[nodiscard]] std::string cpp_header(const DistilledCase& one, const std::string& title,
+                                     const std::string& name = "");
 /// law.c, C99.
-[[nodiscard]] std::string c_source(const DistilledCase& one, const std::string& title, const std::string& name = "");
+[[nodiscard]] std::string c_source(const DistilledCase& one, const std::string& title,
+                                   const std::string& name = "");
 /// law.h declares what c_source defines, for C and C++.
-[[nodiscard]] std::string c_header(const DistilledCase& one, const std::string& title, const std::string& name = "");
+[[nodiscard]] std::string c_header(const DistilledCase& one, const std::string& title,
+                                   const std::string& name = "");
 /// law.py, Python 3.6. In Python a continued force issues the warning OutsideRange as well.
 [[nodiscard]] std::string python_module(const DistilledCase& one, const std::string& title);
 /// law.mo, a package of functions of Modelica 3.2 without any library; the load/unload law, which has a memory, is left out.

@@ -48,7 +48,8 @@ bool minimise(const coupling::LawForm& form, const Points& points, VectorXd& p) 
     bool moved = false;
     for (int k = 0; k < 30 && !moved; ++k, damping *= 8.0) {
       MatrixXd stacked(j.rows() + p.size(), p.size());
-      stacked << j * scale.cwiseInverse().asDiagonal(), std::sqrt(damping) * MatrixXd::Identity(p.size(), p.size());
+      stacked << j * scale.cwiseInverse().asDiagonal(),
+          std::sqrt(damping) * MatrixXd::Identity(p.size(), p.size());
       VectorXd right = VectorXd::Zero(stacked.rows());
       right.head(r.size()) = -r;
       const VectorXd step = numerics::full_rank_least_squares(stacked, right).cwiseQuotient(scale);
@@ -57,8 +58,8 @@ bool minimise(const coupling::LawForm& form, const Points& points, VectorXd& p) 
       const VectorXd r_next = misfit(form, next, points);
       if (!r_next.allFinite() || !(r_next.norm() <= r.norm())) continue;
       moved = true;
-      const bool still =
-          r.norm() - r_next.norm() <= 1e-14 * r.norm() && step.cwiseProduct(scale).norm() <= 1e-12 * (j * p).norm();
+      const bool still = r.norm() - r_next.norm() <= 1e-14 * r.norm() &&
+                         step.cwiseProduct(scale).norm() <= 1e-12 * (j * p).norm();
       p = next;
       r = r_next;
       if (still) return true;
@@ -76,8 +77,9 @@ coupling::LawValue FittedLaw::at(double travel, coupling::Outside outside) const
   if (travel < 0.0) return result;
   result.extrapolated = !range.contains(travel);
   if (result.extrapolated && outside == coupling::Outside::refuse) {
-    throw std::domain_error(fmt::format("travel of {:.6g} mm is outside the range of the law {}, {:.6g} to {:.6g} mm",
-                                        1e3 * travel, form->name(), 1e3 * range.low, 1e3 * range.high));
+    throw std::domain_error(
+        fmt::format("travel of {:.6g} mm is outside the range of the law {}, {:.6g} to {:.6g} mm",
+                    1e3 * travel, form->name(), 1e3 * range.low, 1e3 * range.high));
   }
   const coupling::RangedLaw law = ranged();
   result.force = law.force(travel);
@@ -89,7 +91,8 @@ double FittedLaw::energy(double travel) const {
   return travel <= 0.0 ? 0.0 : ranged().energy(travel);
 }
 
-LawError error_of(const numerics::HermiteCurve& curve, const std::vector<std::size_t>& at, const FittedLaw& law) {
+LawError error_of(const numerics::HermiteCurve& curve, const std::vector<std::size_t>& at,
+                  const FittedLaw& law) {
   LawError e;
   const coupling::RangedLaw ranged = law.ranged();
   Interval force, stiffness, energy;
@@ -157,7 +160,8 @@ FittedLaw fit_law(const coupling::LawFormPointer& form, const numerics::HermiteC
   const VectorXd scale = j.colwise().norm().transpose().cwiseMax(1e-300);
   const MatrixXd unit = j * scale.cwiseInverse().asDiagonal();
   const MatrixXd inverse = numerics::pseudo_inverse(unit.transpose() * unit);
-  law.covariance = variance * (scale.cwiseInverse().asDiagonal() * inverse * scale.cwiseInverse().asDiagonal());
+  law.covariance =
+      variance * (scale.cwiseInverse().asDiagonal() * inverse * scale.cwiseInverse().asDiagonal());
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i < curve.knots().size(); ++i) {
     if (!std::binary_search(fit_at.begin(), fit_at.end(), i)) others.push_back(i);

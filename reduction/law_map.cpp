@@ -13,7 +13,8 @@ namespace snare::reduction {
 namespace {
 
 constexpr double pretension_strain = 1e-3;
-constexpr double reach = 3.0;  // of the travel asked for: the simple laws come near where the wire is well taut
+constexpr double reach =
+    3.0;  // of the travel asked for: the simple laws come near where the wire is well taut
 
 LawMapRow row_at(coupling::PushProblem test, double slack, const std::vector<double>& travel,
                  const DistilSettings& settings) {
@@ -37,7 +38,8 @@ LawMapRow row_at(coupling::PushProblem test, double slack, const std::vector<dou
   Eigen::VectorXd numbers(2);
   numbers << ea, taut - row.natural_height;
   const double tension = std::max(0.0, -slack / place.length * ea);
-  const double k = coupling::tensioned_stiffness(place.bending_stiffness, tension, place.span, place.position).value;
+  const double k =
+      coupling::tensioned_stiffness(place.bending_stiffness, tension, place.span, place.position).value;
   for (const double d : travel) {
     row.stretched.push_back(stretched->force(numbers, d));
     row.tensioned.push_back(k * d);
@@ -69,7 +71,8 @@ LawMap map_laws(const WireCase& wire, const DistilSettings& settings, int slacks
   test.wire.strand_friction.reset();
   test.wire.yielding.reset();
   test.mount.slip_tension.reset();
-  for (int i = 1; i <= travels; ++i) map.travel.push_back(reach * wire.travel.high * i * i / (travels * travels));
+  for (int i = 1; i <= travels; ++i)
+    map.travel.push_back(reach * wire.travel.high * i * i / (travels * travels));
   const double low = -pretension_strain * test.mount.span;
   const double high = std::max(wire.slack.high, -low);
   map.rows.resize(static_cast<std::size_t>(slacks));

@@ -9,11 +9,12 @@ namespace snare::reduction {
 
 /// A law with nothing fitted beside the full wire, over slack and travel at mid-span.
 struct LawMapRow {
-  double slack = 0.0;             ///< negative: pretensioned [m]
-  double natural_height = 0.0;    ///< of the wire before the push [m]
-  std::vector<double> full;       ///< force of the full wire, one a travel; short where the solve ended early [N]
+  double slack = 0.0;           ///< negative: pretensioned [m]
+  double natural_height = 0.0;  ///< of the wire before the push [m]
+  std::vector<double> full;  ///< force of the full wire, one a travel; short where the solve ended early [N]
   std::vector<double> stretched;  ///< Honda et al., eq. 1, at the wire's own EA, length and height [N]
-  std::vector<double> tensioned;  ///< k(EI, T, s) d with the tension before the push, none in a loose wire [N]
+  std::vector<double>
+      tensioned;  ///< k(EI, T, s) d with the tension before the push, none in a loose wire [N]
 };
 
 /// Laws without fitted numbers beside the full wire, at one position; see map_laws.
@@ -23,8 +24,8 @@ struct LawMap {
   std::vector<LawMapRow> rows;
 
   /// Travels over which a law stays within a share of the full force, as the longest run of them; nothing when none.
-  [[nodiscard]] std::optional<Interval> within(const LawMapRow& row, const std::vector<double> LawMapRow::*law,
-                                               double share) const;
+  [[nodiscard]] std::optional<Interval> within(const LawMapRow& row,
+                                               const std::vector<double> LawMapRow::*law, double share) const;
 };
 
 /// Slacks from a pretension by a strain of 0.1 % to the largest slack of the case, elastic wire without friction.

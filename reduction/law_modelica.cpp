@@ -11,7 +11,8 @@ namespace {
 
 std::string array(const char* name, const std::vector<double>& values) {
   // A number without a point is an Integer, which Modelica takes for a Real.
-  return fmt::format("  constant Real {}[{}] = {{{}}};\n", name, values.size(), number_list(values, 8, ",\n    "));
+  return fmt::format("  constant Real {}[{}] = {{{}}};\n", name, values.size(),
+                     number_list(values, 8, ",\n    "));
 }
 
 /// A text as a Modelica string.

@@ -152,9 +152,10 @@ std::string python_module(const DistilledCase& one, const std::string& title) {
   array("knots_slack", table.axes()[2]);
   array("nodes", table.nodes());
   if (one.table.unloading) array("nodes_unloading", one.table.unloading->nodes());
-  text +=
-      filled(python_helpers, table_numbers(table)) + filled(table_function, {{"name", "force"}, {"nodes", "nodes"}});
-  if (one.table.unloading) text += filled(table_function, {{"name", "force_unloading"}, {"nodes", "nodes_unloading"}});
+  text += filled(python_helpers, table_numbers(table)) +
+          filled(table_function, {{"name", "force"}, {"nodes", "nodes"}});
+  if (one.table.unloading)
+    text += filled(table_function, {{"name", "force_unloading"}, {"nodes", "nodes_unloading"}});
   for (const DistilledPlace& place : one.places) {
     for (const ExportedLaw& law : exported_laws(place, "math.")) {
       Replacements words = law.of_numbers;

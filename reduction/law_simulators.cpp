@@ -14,7 +14,8 @@ scenario::DistilledLoss loss_of(const DistilledPlace& place) {
     const LoadUnloadFit& fit = *place.load_unload;
     loss.loop = {fit.law.returned(), fit.law.turn(), fit.loop};
   }
-  const auto damped = std::ranges::find_if(place.impacts, [](const ImpactDamping& i) { return i.damping.has_value(); });
+  const auto damped =
+      std::ranges::find_if(place.impacts, [](const ImpactDamping& i) { return i.damping.has_value(); });
   if (damped != place.impacts.end()) loss.dashpot = {damped->speed, damped->restitution, *damped->damping};
   return loss;
 }
@@ -28,7 +29,8 @@ numerics::HermiteCurve curve_of(const DistilledCase& one, const DistilledPlace& 
 std::vector<MujocoLaw> mujoco_laws(const DistilledCase& one) {
   std::vector<MujocoLaw> laws;
   for (const DistilledPlace& place : one.places) {
-    const auto linear = std::ranges::find(place.laws, "linear", [](const FittedLaw& law) { return law.form->name(); });
+    const auto linear =
+        std::ranges::find(place.laws, "linear", [](const FittedLaw& law) { return law.form->name(); });
     laws.push_back(mujoco_law(place.position, curve_of(one, place),
                               linear == place.laws.end() ? std::nullopt : std::optional(linear->values[0]),
                               loss_of(place)));

@@ -29,7 +29,8 @@ struct AdamsSplines {
 
 /// law_simulink.csv, for a block that interpolates linearly in two inputs, as Simulink's 2-D Lookup Table does.
 struct LookupTable {
-  std::string csv;  ///< an empty cell and positions [m]; below travel [m] and forces [N] at the slack of the wire
+  std::string
+      csv;  ///< an empty cell and positions [m]; below travel [m] and forces [N] at the slack of the wire
   double largest_error = 0.0;  ///< of linear interpolation against the table, between the knots [N]
 };
 [[nodiscard]] LookupTable lookup_table(const DistilledCase& one);

@@ -15,7 +15,8 @@ namespace {
 
 constexpr int most_pieces = 16;
 constexpr double beyond_travel = 2.0;  // end of the rows over the end of the travel
-constexpr double touch_width = 1e-2;   // of the first cell: distance from the last row without contact to first touch
+constexpr double touch_width =
+    1e-2;  // of the first cell: distance from the last row without contact to first touch
 constexpr double beyond_mounts =
     0.1;  // of the span: columns with the values at the mounts, so that linear readers keep them
 constexpr int columns_to_a_mount = 4;  // from the end of the positions, for each piece
@@ -105,9 +106,11 @@ std::vector<double> akima_slopes(const std::vector<double>& x, const std::vector
 }
 
 /// Values of a column at a quarter, half, three quarters and the end of every cell along the travel.
-std::vector<double> between(const std::vector<double>& travel, const std::vector<double>& force, Along along) {
+std::vector<double> between(const std::vector<double>& travel, const std::vector<double>& force,
+                            Along along) {
   const numerics::HermiteCurve curve(
-      travel, force, along == Along::akima ? akima_slopes(travel, force) : std::vector<double>(travel.size()));
+      travel, force,
+      along == Along::akima ? akima_slopes(travel, force) : std::vector<double>(travel.size()));
   std::vector<double> values;
   for (std::size_t i = 0; i + 1 < travel.size(); ++i) {
     for (const double u : {0.25, 0.5, 0.75, 1.0}) {
@@ -130,7 +133,8 @@ double grid_error(const coupling::ForceTable& table, double slack, const Grid& g
       const double d = (1.0 - u) * grid.travel[i] + u * grid.travel[i + 1];
       for (const double v : {0.25, 0.5, 0.75, 1.0}) {
         const double s = (1.0 - v) * grid.position[k - 1] + v * grid.position[k];
-        largest = std::max(largest, std::abs((1.0 - v) * left[p] + v * right[p] - law_force(table, d, s, slack)));
+        largest =
+            std::max(largest, std::abs((1.0 - v) * left[p] + v * right[p] - law_force(table, d, s, slack)));
       }
     }
     left = right;
@@ -208,7 +212,8 @@ AdamsSplines adams_splines(const DistilledCase& one, const std::string& title) {
   AdamsSplines result;
   for (const std::string& line : head_lines(one, title)) result.text += "! " + line + "\n";
   result.text +=
-      "! Read by AKISPL. Rows at negative travel have no force; beyond the range LINEAR_EXTRAPOLATION continues the "
+      "! Read by AKISPL. Rows at negative travel have no force; beyond the range LINEAR_EXTRAPOLATION "
+      "continues the "
       "last rows.\n";
   const double slack_mm = 1e3 * one.wire.nominal_slack();
   int number = 1;
@@ -222,7 +227,8 @@ AdamsSplines adams_splines(const DistilledCase& one, const std::string& title) {
   const auto [grid, error] = refined_grid(one, {Along::linear, Along::akima});
   result.surface_error = error;
   result.text += fmt::format(
-      "! travel (X) and position s (Z) at a slack of {:.6g} mm\nSPLINE/{}\n, LINEAR_EXTRAPOLATION\n", slack_mm, number);
+      "! travel (X) and position s (Z) at a slack of {:.6g} mm\nSPLINE/{}\n, LINEAR_EXTRAPOLATION\n",
+      slack_mm, number);
   result.text += adams_numbers("X", grid.travel);
   for (std::size_t k = 0; k < grid.position.size(); ++k) {
     // The first number of a Y list is its Z.

@@ -32,7 +32,8 @@ Dissipation dissipation(const numerics::HermiteCurve& loading, const numerics::H
   return result;
 }
 
-LoadUnloadFit fit_load_unload(const numerics::HermiteCurve& loading, const numerics::HermiteCurve& unloading) {
+LoadUnloadFit fit_load_unload(const numerics::HermiteCurve& loading,
+                              const numerics::HermiteCurve& unloading) {
   const std::vector<double>& travel = loading.knots();
   const double end = travel.back();
   double product = 0.0;

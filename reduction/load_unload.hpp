@@ -42,7 +42,8 @@ struct Dissipation {
   /// not know the rate: the damping c follows only for a stated angular rate w.
   double damping_times_rate = 0.0;
 };
-[[nodiscard]] Dissipation dissipation(const numerics::HermiteCurve& loading, const numerics::HermiteCurve& unloading);
+[[nodiscard]] Dissipation dissipation(const numerics::HermiteCurve& loading,
+                                      const numerics::HermiteCurve& unloading);
 
 /// Two numbers fitted to one unloading from the end of the travel: r to its first 80 %, lambda to all of it.
 struct LoadUnloadFit {

@@ -103,8 +103,10 @@ Cycle cycle_of(const std::vector<MujocoSlider>& sliders, double end) {
       return s.tension / s.yield * (stretch - slipped) * lever(s, d);
     };
     for (int round = 0; round < 2; ++round) {
-      for (int i = 0; i <= steps; ++i) cycle.up[static_cast<std::size_t>(i)] += (round == 1) * force(end * i / steps);
-      for (int i = steps; i >= 0; --i) cycle.down[static_cast<std::size_t>(i)] += (round == 1) * force(end * i / steps);
+      for (int i = 0; i <= steps; ++i)
+        cycle.up[static_cast<std::size_t>(i)] += (round == 1) * force(end * i / steps);
+      for (int i = steps; i >= 0; --i)
+        cycle.down[static_cast<std::size_t>(i)] += (round == 1) * force(end * i / steps);
     }
   }
   for (std::size_t i = 0; i < steps; ++i)
@@ -114,7 +116,8 @@ Cycle cycle_of(const std::vector<MujocoSlider>& sliders, double end) {
 
 /// Sliders whose forces are (1 - r)/2 of the loading curve on the way in, the opposite on the way back, and
 /// lose the loop's energy.
-std::optional<MujocoLoop> loop_of(const numerics::HermiteCurve& curve, const std::vector<MujocoSpring>& springs,
+std::optional<MujocoLoop> loop_of(const numerics::HermiteCurve& curve,
+                                  const std::vector<MujocoSpring>& springs,
                                   const scenario::DistilledLoss::Loop& law) {
   const double end = curve.knots().back();
   const double half = 0.5 * (1.0 - law.returned);
@@ -133,7 +136,8 @@ std::optional<MujocoLoop> loop_of(const numerics::HermiteCurve& curve, const std
   }
   const Eigen::VectorXd tensions = non_negative(levers, wanted);
   for (int k = 0; k < slider_count; ++k) loop.sliders[static_cast<std::size_t>(k)].tension = tensions[k];
-  std::erase_if(loop.sliders, [&](const MujocoSlider& s) { return !(s.tension > 1e-9 * tensions.maxCoeff()); });
+  std::erase_if(loop.sliders,
+                [&](const MujocoSlider& s) { return !(s.tension > 1e-9 * tensions.maxCoeff()); });
   const double lost = cycle_of(loop.sliders, end).energy;
   if (!(lost > 0.0)) return std::nullopt;
   for (MujocoSlider& s : loop.sliders) s.tension *= law.energy / lost;
@@ -189,7 +193,8 @@ MujocoLaw mujoco_law(double position, const numerics::HermiteCurve& curve, std::
     const double d = law.end * i / points;
     work += d * curve.value(d);
     square += d * d;
-    law.steepest = std::max({law.steepest, stiffness_of(law.springs, d), stiffness_of(law.springs, law.end + d)});
+    law.steepest =
+        std::max({law.steepest, stiffness_of(law.springs, d), stiffness_of(law.springs, law.end + d)});
   }
   law.linear_stiffness = std::max(0.0, linear.value_or(work / square));
   for (int i = 1; i <= points; ++i) {

@@ -33,8 +33,9 @@ struct MujocoSlider {
 struct MujocoLoop {
   std::vector<MujocoSpring> springs;
   std::vector<MujocoSlider> sliders;
-  double energy = 0.0;         ///< lost in a repeated cycle over the whole travel [J]
-  double largest_error = 0.0;  ///< of both branches of that cycle against the load/unload law, turns left out [N]
+  double energy = 0.0;  ///< lost in a repeated cycle over the whole travel [J]
+  double largest_error =
+      0.0;  ///< of both branches of that cycle against the load/unload law, turns left out [N]
 };
 
 /// The law at one position as MuJoCo can have it.
@@ -52,8 +53,8 @@ struct MujocoLaw {
 
 /// curve: force over travel from 0, a knot at the end of the travel. linear: stiffness of the linear law
 /// [N/m]; empty: least squares. Throws nothing; a loop whose energy is not positive is left out.
-[[nodiscard]] MujocoLaw mujoco_law(double position, const numerics::HermiteCurve& curve, std::optional<double> linear,
-                                   const scenario::DistilledLoss& loss);
+[[nodiscard]] MujocoLaw mujoco_law(double position, const numerics::HermiteCurve& curve,
+                                   std::optional<double> linear, const scenario::DistilledLoss& loss);
 
 /// Force of springs at a travel [N].
 [[nodiscard]] double force_of(const std::vector<MujocoSpring>& springs, double travel);

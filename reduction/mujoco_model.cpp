@@ -38,9 +38,9 @@ std::string expanded(const std::filesystem::path& file) {
     if (include == xml.elements.end()) return text;
     const std::string name = include->attribute("file").value_or("");
     if (count >= most_includes || name.empty())
-      throw InputError(
-          {file.string(), include->line, "include", name,
-           name.empty() ? "must name a file" : "must not be one of more than 100: do files include each other?"});
+      throw InputError({file.string(), include->line, "include", name,
+                        name.empty() ? "must name a file"
+                                     : "must not be one of more than 100: do files include each other?"});
     const std::filesystem::path path = file.parent_path() / name;
     const XmlText inner = base::scan_xml(path.string(), base::read_text(path));
     const XmlElement& root = inner.elements.front();
@@ -84,7 +84,8 @@ class Defaults {
     for (int k = element.parent; name.empty() && k >= 0; k = xml_.elements[at(k)].parent)
       name = xml_.elements[at(k)].attribute("childclass").value_or("");
     int scope = class_of(name);
-    for (; scope >= 0 && xml_.elements[at(scope)].name == "default"; scope = xml_.elements[at(scope)].parent) {
+    for (; scope >= 0 && xml_.elements[at(scope)].name == "default";
+         scope = xml_.elements[at(scope)].parent) {
       for (const XmlElement& one : xml_.elements) {
         if (one.parent == scope && one.name == element.name)
           if (const auto value = one.attribute(key)) return value;
@@ -149,7 +150,8 @@ Matrix3d rotation_of(const XmlElement& element, const Angles& angles) {
     return (Matrix3d() << x, y, x.cross(y)).finished();
   }
   if (const auto z = values("zaxis"); z.size() == 3)
-    return Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d(z[0], z[1], z[2])).toRotationMatrix();
+    return Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d(z[0], z[1], z[2]))
+        .toRotationMatrix();
   return Matrix3d::Identity();
 }
 
@@ -172,7 +174,8 @@ Eigen::Isometry3d pose_of(const XmlText& xml, const XmlElement& body) {
 std::vector<const XmlElement*> joints_of(const XmlText& xml, const XmlElement& body) {
   std::vector<const XmlElement*> joints;
   for (const XmlElement& one : xml.elements) {
-    if ((one.name == "joint" || one.name == "freejoint") && one.parent >= 0 && &xml.elements[at(one.parent)] == &body)
+    if ((one.name == "joint" || one.name == "freejoint") && one.parent >= 0 &&
+        &xml.elements[at(one.parent)] == &body)
       joints.push_back(&one);
   }
   return joints;
@@ -180,7 +183,8 @@ std::vector<const XmlElement*> joints_of(const XmlText& xml, const XmlElement& b
 
 /// Where files that the model names are, seen from another folder: one more <compiler>; empty where it names
 /// none.
-std::string asset_folders(const XmlText& xml, const std::filesystem::path& model, const std::filesystem::path& out) {
+std::string asset_folders(const XmlText& xml, const std::filesystem::path& model,
+                          const std::filesystem::path& out) {
   const auto names_file = [&](const XmlElement& e) {
     return e.attribute("file") && (within(xml, e, "asset") || e.name == "skin");
   };
@@ -226,7 +230,8 @@ struct MujocoTarget::Parts {
   Parts(const MujocoTarget& target, const MujocoMeeting& meeting, const MujocoLaw& law)
       : xml(base::scan_xml(target.file_.string(), target.text_)) {
     for (const XmlElement& one : xml.elements) {
-      if (one.name == "body" && one.attribute("name") == meeting.body && within(xml, one, "worldbody")) body = &one;
+      if (one.name == "body" && one.attribute("name") == meeting.body && within(xml, one, "worldbody"))
+        body = &one;
     }
     if (body == nullptr) {
       const std::vector<std::string> known = target.bodies();
@@ -268,10 +273,10 @@ struct MujocoTarget::Parts {
     const Vector3d along =
         written.size() == 3 ? Vector3d(written[0], written[1], written[2]).normalized() : Vector3d::UnitZ();
     if (meeting.axis && tie.axis.cross(along).norm() > 1e-6)
-      throw InputError(
-          {xml.file, joints[0]->line, "--axis",
-           fmt::format("{} {} {}", (*meeting.axis)[0], (*meeting.axis)[1], (*meeting.axis)[2]),
-           fmt::format("must be along the body's only joint, a slide along {} {} {}", along[0], along[1], along[2])});
+      throw InputError({xml.file, joints[0]->line, "--axis",
+                        fmt::format("{} {} {}", (*meeting.axis)[0], (*meeting.axis)[1], (*meeting.axis)[2]),
+                        fmt::format("must be along the body's only joint, a slide along {} {} {}", along[0],
+                                    along[1], along[2])});
     joint = joints[0];
     tie.coefficient = meeting.axis && tie.axis.dot(along) < 0.0 ? -1.0 : 1.0;
     tie.axis = tie.coefficient * along;
@@ -284,8 +289,8 @@ struct MujocoTarget::Parts {
 MujocoTarget::MujocoTarget(const std::filesystem::path& file) : file_(file), text_(expanded(file)) {
   const XmlText xml = base::scan_xml(file_.string(), text_);
   if (xml.elements.front().name != "mujoco")
-    throw InputError({file_.string(), xml.elements.front().line, "root", "<" + xml.elements.front().name + ">",
-                      "must be a model of MuJoCo: <mujoco>"});
+    throw InputError({file_.string(), xml.elements.front().line, "root",
+                      "<" + xml.elements.front().name + ">", "must be a model of MuJoCo: <mujoco>"});
 }
 
 std::vector<std::string> MujocoTarget::bodies() const {
@@ -319,20 +324,23 @@ MujocoModel MujocoTarget::with(const MujocoLaw& law, MujocoForm form, const Mujo
     const Eigen::Quaterniond q(X.linear());
     const Vector3d p = X.translation();
     tail += fmt::format(
-        "  <worldbody>\n    <body name=\"{}_anchor\" pos=\"{} {} {}\" quat=\"{} {} {} {}\">\n{}    </body>\n  "
+        "  <worldbody>\n    <body name=\"{}_anchor\" pos=\"{} {} {}\" quat=\"{} {} {} {}\">\n{}    </body>\n "
+        " "
         "</worldbody>\n",
         tie.name, p[0], p[1], p[2], q.w(), q.x(), q.y(), q.z(), anchors);
   }
   const double from = used.first_touch;
   tail += fmt::format(
-      "  <tendon>\n{0}  </tendon>\n  <custom>\n    <numeric name=\"{1}_range\" data=\"{2} {3}\"/>\n  </custom>\n"
+      "  <tendon>\n{0}  </tendon>\n  <custom>\n    <numeric name=\"{1}_range\" data=\"{2} {3}\"/>\n  "
+      "</custom>\n"
       "  <sensor>\n    <tendonpos name=\"{1}_now\" tendon=\"{1}_1\"/>\n  </sensor>\n",
       mujoco_tendons(law, form, used), tie.name, from, from + law.end);
   insertions.emplace_back(
       parts.xml.elements.front().close_begin,
-      fmt::format("\n  <!-- The snare wire on body {}: {}.\n       Readers: {}. {}_range is the length of its first "
-                  "tendon within the range [m]. -->\n{}",
-                  tie.name, mujoco_words(law, form), readers_of(form), tie.name, tail));
+      fmt::format(
+          "\n  <!-- The snare wire on body {}: {}.\n       Readers: {}. {}_range is the length of its first "
+          "tendon within the range [m]. -->\n{}",
+          tie.name, mujoco_words(law, form), readers_of(form), tie.name, tail));
   model.text = base::with_insertions(parts.xml.text, std::move(insertions));
   if (!model.fixed)
     model.notes.push_back(

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double far_below = 1000.0;          // the lower end of a dead band lies so far below first touch [m]
+constexpr double far_below = 1000.0;  // the lower end of a dead band lies so far below first touch [m]
 constexpr double damper_share = 1.0 / 200.0;  // half width of the damper's sites over the travel
 
 /// Sites and a pin of one wrapped tendon, or of several that begin at other travels.
@@ -57,14 +57,15 @@ const std::vector<MujocoSpring>& springs_of_form(const MujocoLaw& law, MujocoFor
 
 /// Text for a comment of XML, in which a double hyphen is not allowed.
 std::string comment_safe(std::string words) {
-  for (std::size_t at = words.find("--"); at != std::string::npos; at = words.find("--", at)) words.insert(at + 1, " ");
+  for (std::size_t at = words.find("--"); at != std::string::npos; at = words.find("--", at))
+    words.insert(at + 1, " ");
   return words;
 }
 
 std::string tendon(const MujocoTie& tie, const std::string& name, const Vector3d& stiffness, double start,
                    bool one_number) {
-  const std::string numbers =
-      one_number ? fmt::format("{}", stiffness[0]) : fmt::format("{} {} {}", stiffness[0], stiffness[1], stiffness[2]);
+  const std::string numbers = one_number ? fmt::format("{}", stiffness[0])
+                                         : fmt::format("{} {} {}", stiffness[0], stiffness[1], stiffness[2]);
   const double from = tie.first_touch + start;
   if (tie.joint.empty()) {
     return fmt::format(
@@ -98,11 +99,13 @@ const char* readers_of(MujocoForm form) {
     case MujocoForm::loop:
       return "MuJoCo 4.0.0 and later (springyield)";
     case MujocoForm::linear:
-      return "MuJoCo (tried: 3.2.0, 3.6.0, 3.17.0, 4.0.0), MuJoCo Warp, MJX 3.17.0, SolverMuJoCo of Newton 1.8.0";
+      return "MuJoCo (tried: 3.2.0, 3.6.0, 3.17.0, 4.0.0), MuJoCo Warp, MJX 3.17.0, SolverMuJoCo of Newton "
+             "1.8.0";
     case MujocoForm::law:
       break;
   }
-  return "MuJoCo 3.7.0 and later (stiffness of three numbers; tried: 3.17.0, 4.0.0), MuJoCo Warp; not MJX, Newton, "
+  return "MuJoCo 3.7.0 and later (stiffness of three numbers; tried: 3.17.0, 4.0.0), MuJoCo Warp; not MJX, "
+         "Newton, "
          "Drake";
 }
 
@@ -111,20 +114,21 @@ bool has_form(const MujocoLaw& law, MujocoForm form) {
 }
 
 std::string mujoco_words(const MujocoLaw& law, MujocoForm form) {
-  std::string words = fmt::format("s = {:.6g} mm, travel 0 to {:.6g} mm, {:.5g} N at its end", 1e3 * law.position,
-                                  1e3 * law.end, law.force_range);
+  std::string words = fmt::format("s = {:.6g} mm, travel 0 to {:.6g} mm, {:.5g} N at its end",
+                                  1e3 * law.position, 1e3 * law.end, law.force_range);
   if (form == MujocoForm::linear)
     return words + fmt::format("; one number, wrong by up to {:.3g} N within the travel", law.linear_error);
   words += "; straight beyond it";
   if (form == MujocoForm::loop)
-    return words +
-           fmt::format(
-               "; a repeated cycle over the travel loses {:.4g} J at any rate, both branches within {:.3g} N of "
-               "the load/unload law",
-               law.loop->energy, law.loop->largest_error);
+    return words + fmt::format(
+                       "; a repeated cycle over the travel loses {:.4g} J at any rate, both branches within "
+                       "{:.3g} N of "
+                       "the load/unload law",
+                       law.loop->energy, law.loop->largest_error);
   if (law.dashpot)
-    words += fmt::format("; damping in contact of an impact at {:.4g} m/s, c = {:.4g} N s/m, restitution {:.5g}",
-                         law.dashpot->speed, law.dashpot->damping, law.dashpot->restitution);
+    words +=
+        fmt::format("; damping in contact of an impact at {:.4g} m/s, c = {:.4g} N s/m, restitution {:.5g}",
+                    law.dashpot->speed, law.dashpot->damping, law.dashpot->restitution);
   return words;
 }
 
@@ -158,7 +162,8 @@ std::string mujoco_anchors(const MujocoLaw& law, MujocoForm form, const MujocoTi
   for (const Wrap& w : wraps_of(law, form)) {
     const Vector3d at = tie.point + (tie.advance + w.start) * tie.axis;
     text += fmt::format(
-        "      <site name=\"{0}_{1}_left\" pos=\"{2}\" size=\"0.0001\"/><site name=\"{0}_{1}_right\" pos=\"{3}\" "
+        "      <site name=\"{0}_{1}_left\" pos=\"{2}\" size=\"0.0001\"/><site name=\"{0}_{1}_right\" "
+        "pos=\"{3}\" "
         "size=\"0.0001\"/>\n",
         tie.name, w.suffix, vector_text(at - w.half_width * along), vector_text(at + w.half_width * along));
   }
@@ -176,7 +181,8 @@ std::string mujoco_pin(const MujocoLaw& law, MujocoForm form, const MujocoTie& t
       "      <geom name=\"{0}_pin\" type=\"sphere\" size=\"{1}\" pos=\"{2}\" mass=\"0\" contype=\"0\" "
       "conaffinity=\"0\"/>\n"
       "      <site name=\"{0}_side\" pos=\"{3}\" size=\"0.0001\"/>\n",
-      tie.name, radius, vector_text(tie.point - radius * tie.axis), vector_text(tie.point + 3.0 * radius * tie.axis));
+      tie.name, radius, vector_text(tie.point - radius * tie.axis),
+      vector_text(tie.point + 3.0 * radius * tie.axis));
 }
 
 std::string mujoco_file(const std::vector<MujocoLaw>& laws, MujocoForm form, const std::string& title) {
@@ -184,14 +190,18 @@ std::string mujoco_file(const std::vector<MujocoLaw>& laws, MujocoForm form, con
   for (const MujocoLaw& law : laws) {
     if (!has_form(law, form)) continue;
     const std::string name = position_name(law.position);
-    const MujocoTie tie{"wire_" + name, "wire_travel_" + name, 1.0, 0.0, Vector3d::UnitY(), Vector3d::Zero(), 0.0};
+    const MujocoTie tie{"wire_" + name,    "wire_travel_" + name, 1.0, 0.0,
+                        Vector3d::UnitY(), Vector3d::Zero(),      0.0};
     const double mass = std::max(1e-3, std::stod(fmt::format("{:.2g}", 1.05 * sufficient_mass(law))));
     const std::string anchors = mujoco_anchors(law, form, tie);
     bodies += fmt::format("    <!-- {} -->\n", mujoco_words(law, form));
-    if (!anchors.empty()) bodies += fmt::format("    <body name=\"wire_anchor_{}\">\n{}    </body>\n", name, anchors);
+    if (!anchors.empty())
+      bodies += fmt::format("    <body name=\"wire_anchor_{}\">\n{}    </body>\n", name, anchors);
     bodies += fmt::format(
-        "    <body name=\"wire_contact_{0}\">\n      <joint name=\"wire_travel_{0}\" type=\"slide\" axis=\"0 1 0\"/>\n"
-        "      <geom type=\"sphere\" size=\"0.01\" mass=\"{1}\" contype=\"0\" conaffinity=\"0\"/>\n{2}    </body>\n",
+        "    <body name=\"wire_contact_{0}\">\n      <joint name=\"wire_travel_{0}\" type=\"slide\" axis=\"0 "
+        "1 0\"/>\n"
+        "      <geom type=\"sphere\" size=\"0.01\" mass=\"{1}\" contype=\"0\" conaffinity=\"0\"/>\n{2}    "
+        "</body>\n",
         name, mass, mujoco_pin(law, form, tie));
     tendons += mujoco_tendons(law, form, tie);
     ranges += fmt::format("    <numeric name=\"wire_travel_{}_range\" data=\"0 {}\"/>\n", name, law.end);
@@ -199,13 +209,17 @@ std::string mujoco_file(const std::vector<MujocoLaw>& laws, MujocoForm form, con
   }
   return fmt::format(
       "<!-- {}\n     Readers: {}.\n"
-      "     Springs of the snare wire, travel from first touch: no force below it, in N and m. The springs are tendons "
+      "     Springs of the snare wire, travel from first touch: no force below it, in N and m. The springs "
+      "are tendons "
       "with a dead\n"
-      "     band on the joint of the body that meets the wire. `snare export` writes them onto a body of your own "
+      "     band on the joint of the body that meets the wire. `snare export` writes them onto a body of "
+      "your own "
       "model; do not tie\n"
       "     a body to these ones by a weld or a contact, which is as soft as their mass is small.\n"
-      "     wire_travel_*_range is the range [m]: beyond it wire_travel_*_now reads more than its second number. -->\n"
-      "<mujoco model=\"snare_wire\">\n  <worldbody>\n{}  </worldbody>\n  <tendon>\n{}  </tendon>\n  <custom>\n{}  "
+      "     wire_travel_*_range is the range [m]: beyond it wire_travel_*_now reads more than its second "
+      "number. -->\n"
+      "<mujoco model=\"snare_wire\">\n  <worldbody>\n{}  </worldbody>\n  <tendon>\n{}  </tendon>\n  "
+      "<custom>\n{}  "
       "</custom>\n"
       "  <sensor>\n{}  </sensor>\n</mujoco>\n",
       comment_safe(base::one_line(title)), readers_of(form), bodies, tendons, ranges, sensors);

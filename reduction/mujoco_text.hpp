@@ -14,7 +14,8 @@ enum class MujocoForm {
   loop,   ///< the curve with a friction loop by slipping tendons; MuJoCo 4.0.0 and later
   linear  ///< one number a position; also MJX and MuJoCo before 3.7.0
 };
-inline constexpr std::array<MujocoForm, 3> mujoco_forms{MujocoForm::law, MujocoForm::loop, MujocoForm::linear};
+inline constexpr std::array<MujocoForm, 3> mujoco_forms{MujocoForm::law, MujocoForm::loop,
+                                                        MujocoForm::linear};
 
 /// Name of the file of a form: law_mujoco.xml, law_mujoco_loop.xml, law_mujoco_linear.xml.
 [[nodiscard]] const char* file_of(MujocoForm form);
@@ -50,6 +51,7 @@ struct MujocoTie {
 
 /// A model with a body of its own for every law, with a slide joint along y, heavy enough for MuJoCo's
 /// default step. Laws that have not this form are left out.
-[[nodiscard]] std::string mujoco_file(const std::vector<MujocoLaw>& laws, MujocoForm form, const std::string& title);
+[[nodiscard]] std::string mujoco_file(const std::vector<MujocoLaw>& laws, MujocoForm form,
+                                      const std::string& title);
 
 }  // namespace snare::reduction

@@ -57,7 +57,8 @@ void fit(JointCycle& cycle) {
     double su = 0.0;
     std::vector<double> sliders;
     for (auto p = begin + 1; p != cycle.path.end(); ++p) {
-      sliders.push_back(slide({0.0, trial.friction, trial.stick_stiffness}, sliding, now, p->displacement[a]));
+      sliders.push_back(
+          slide({0.0, trial.friction, trial.stick_stiffness}, sliding, now, p->displacement[a]));
       now = p->displacement[a];
       su += now * (p->force[a] - sliders.back());
     }
@@ -83,7 +84,8 @@ void fit(JointCycle& cycle) {
 Eigen::Vector3d SnareJoint::move(JointState& state, const Eigen::Vector3d& displacement) const {
   Eigen::Vector3d force;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    force[i] = slide(axis[static_cast<std::size_t>(i)], state.sliding[i], state.displacement[i], displacement[i]);
+    force[i] =
+        slide(axis[static_cast<std::size_t>(i)], state.sliding[i], state.displacement[i], displacement[i]);
   }
   state.displacement = displacement;
   return force;
@@ -118,8 +120,8 @@ JointCycle cycle_snare(const coupling::SnareSpecification& snare, int axis, doub
   // The way back meets the same displacements in reverse.
   for (int i = 0; i <= steps; ++i) {
     const auto down = static_cast<std::size_t>(i);
-    const double gap =
-        cycle.path[b + 2 * static_cast<std::size_t>(steps) - down].force[axis] - cycle.path[b + down].force[axis];
+    const double gap = cycle.path[b + 2 * static_cast<std::size_t>(steps) - down].force[axis] -
+                       cycle.path[b + down].force[axis];
     cycle.half_width = std::max(cycle.half_width, 0.5 * std::abs(gap));
   }
   fit(cycle);

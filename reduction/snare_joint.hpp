@@ -48,6 +48,7 @@ struct JointCycle {
 };
 
 /// Moves the shaft along an axis (0, 1, 2) by 0, a, -a, a in `steps` points a leg of length 2 a, and fits the joint. amplitude: a [m], > 0.
-[[nodiscard]] JointCycle cycle_snare(const coupling::SnareSpecification& snare, int axis, double amplitude, int steps);
+[[nodiscard]] JointCycle cycle_snare(const coupling::SnareSpecification& snare, int axis, double amplitude,
+                                     int steps);
 
 }  // namespace snare::reduction

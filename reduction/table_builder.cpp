@@ -185,7 +185,8 @@ TableError TableBuilder::check(const coupling::ForceTable& table, Branch branch)
         };
         const bool knot = std::binary_search(travel_.begin(), travel_.end(), k);
         if (i % 2 == 0 && j % 2 == 0 && !knot) {
-          note(0, static_cast<std::size_t>(std::upper_bound(travel_.begin(), travel_.end(), k) - travel_.begin() - 1));
+          note(0, static_cast<std::size_t>(std::upper_bound(travel_.begin(), travel_.end(), k) -
+                                           travel_.begin() - 1));
         } else if (i % 2 == 1 && j % 2 == 0 && knot) {
           note(1, i / 2);
         } else if (i % 2 == 0 && j % 2 == 1 && knot) {
@@ -209,8 +210,9 @@ bool TableBuilder::refine() {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::vector<std::size_t> cells(cell_error_[axis].size());
     std::iota(cells.begin(), cells.end(), 0);
-    std::stable_sort(cells.begin(), cells.end(),
-                     [&](std::size_t a, std::size_t b) { return cell_error_[axis][a] > cell_error_[axis][b]; });
+    std::stable_sort(cells.begin(), cells.end(), [&](std::size_t a, std::size_t b) {
+      return cell_error_[axis][a] > cell_error_[axis][b];
+    });
     std::size_t room = static_cast<std::size_t>(settings_.most_points[axis]);
     const std::size_t present = axis == 0 ? travel_.size() : (axis == 1 ? position_ : slack_).size();
     room = room > present ? room - present : 0;

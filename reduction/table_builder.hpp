@@ -31,7 +31,8 @@ inline constexpr double bound_factor = 1.5;
 /// A table with its error. `report` is not usable where the sampling ended early; then there is no table.
 struct BuiltTable {
   std::unique_ptr<coupling::ForceTable> loading;
-  std::unique_ptr<coupling::ForceTable> unloading;  ///< from the end of the travel; null where nothing dissipates
+  std::unique_ptr<coupling::ForceTable>
+      unloading;  ///< from the end of the travel; null where nothing dissipates
   TableError loading_error, unloading_error;
   int rounds = 0;          ///< of refinement
   std::size_t curves = 0;  ///< of the full wire behind it, with those of the check
@@ -53,6 +54,7 @@ struct BuiltTable {
 /// Knots, of any unit, for functions given on candidates: ends first, then one at a time where the spline through the knots is
 /// farthest from a function. lines: each as long as candidates. Returns ascending indices, `count` of them or all.
 [[nodiscard]] std::vector<std::size_t> place_knots(const std::vector<double>& candidates,
-                                                   const std::vector<std::vector<double>>& lines, std::size_t count);
+                                                   const std::vector<std::vector<double>>& lines,
+                                                   std::size_t count);
 
 }  // namespace snare::reduction

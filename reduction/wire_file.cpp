@@ -52,8 +52,10 @@ struct ListedQuantity {
 };
 
 const std::array<ListedQuantity, 4> listed_quantities{{
-    {"radius_mm", Range::from(0.0, 100.0), mm, [](coupling::PushProblem& t, double v) { t.pusher.radius = v; }},
-    {"friction", Range::from(0.0, 2.0), 1.0, [](coupling::PushProblem& t, double v) { t.pusher.friction = v; }},
+    {"radius_mm", Range::from(0.0, 100.0), mm,
+     [](coupling::PushProblem& t, double v) { t.pusher.radius = v; }},
+    {"friction", Range::from(0.0, 2.0), 1.0,
+     [](coupling::PushProblem& t, double v) { t.pusher.friction = v; }},
     {"bending_stiffness_Nm2", Range::from(1e-15, 1e9), 1.0,
      [](coupling::PushProblem& t, double v) { t.wire.bending_stiffness_override = v; }},
     {"axial_stiffness_N", Range::above(0.0, 1e15), 1.0,
@@ -84,7 +86,8 @@ void read_ranges(const TomlTable& table, WireCase& nominal, bool travel_known) {
   }
   const double slack = nominal.nominal_slack();
   nominal.slack = {slack, slack};
-  if (slack > 0.0) nominal.slack = {(1.0 - default_slack_spread) * slack, (1.0 + default_slack_spread) * slack};
+  if (slack > 0.0)
+    nominal.slack = {(1.0 - default_slack_spread) * slack, (1.0 + default_slack_spread) * slack};
   if (const auto asked = read_interval(table, "slack_mm", Range::from(-1e3, 1e5))) {
     nominal.slack = *asked;
     if (base::exceeds(shortest_length * span, span + asked->low))
@@ -100,7 +103,8 @@ std::vector<WireCase> combine(const TomlTable& table, const WireCase& nominal) {
   std::vector<WireCase> cases{nominal};
   for (const ListedQuantity& quantity : listed_quantities) {
     if (!table.has(quantity.key)) continue;
-    const std::vector<double> values = table.numbers(quantity.key, 1, most_values, quantity.range, quantity.unit);
+    const std::vector<double> values =
+        table.numbers(quantity.key, 1, most_values, quantity.range, quantity.unit);
     if (values.empty()) continue;
     std::vector<WireCase> more;
     for (const WireCase& one : cases) {
@@ -166,7 +170,8 @@ void read_law_positions(const TomlTable& table, WireCase& nominal) {
 
 void read_law_offsets(const TomlTable& table, WireCase& nominal) {
   if (!table.has("displacement_offsets_mm")) return;
-  nominal.law_offsets = table.numbers("displacement_offsets_mm", 1, most_law_positions, Range::from(0.0, 1000.0), mm);
+  nominal.law_offsets =
+      table.numbers("displacement_offsets_mm", 1, most_law_positions, Range::from(0.0, 1000.0), mm);
   if (!nominal.law_offsets.empty() && nominal.law_offsets.size() != nominal.law_positions.size()) {
     table.fail("displacement_offsets_mm",
                fmt::format("must have one value for each of the {} positions", nominal.law_positions.size()));
@@ -195,28 +200,31 @@ std::optional<ImpactSettings> read_impacts(const TomlTable& root, const scenario
 
 /// Words of C, C++ and Modelica that are no names, as far as they consist of letters.
 constexpr std::string_view reserved[] = {
-    "algorithm", "alignas",  "and",      "asm",      "auto",     "block",        "bool",      "break",     "case",
-    "catch",     "char",     "class",    "concept",  "connect",  "const",        "constant",  "continue",  "default",
-    "delete",    "do",       "double",   "each",     "else",     "encapsulated", "end",       "enum",      "equation",
-    "explicit",  "export",   "extends",  "extern",   "external", "false",        "final",     "float",     "flow",
-    "for",       "friend",   "function", "goto",     "if",       "import",       "in",        "initial",   "inline",
-    "inner",     "input",    "int",      "long",     "loop",     "model",        "mutable",   "namespace", "new",
-    "not",       "operator", "or",       "outer",    "output",   "package",      "parameter", "partial",   "private",
-    "protected", "public",   "record",   "register", "requires", "restrict",     "return",    "short",     "signed",
-    "sizeof",    "static",   "std",      "stream",   "struct",   "switch",       "template",  "then",      "this",
-    "throw",     "true",     "try",      "type",     "typedef",  "typename",     "union",     "unsigned",  "using",
-    "virtual",   "void",     "volatile", "when",     "while",    "within",       "xor"};
+    "algorithm", "alignas", "and",      "asm",      "auto",      "block",   "bool",     "break",
+    "case",      "catch",   "char",     "class",    "concept",   "connect", "const",    "constant",
+    "continue",  "default", "delete",   "do",       "double",    "each",    "else",     "encapsulated",
+    "end",       "enum",    "equation", "explicit", "export",    "extends", "extern",   "external",
+    "false",     "final",   "float",    "flow",     "for",       "friend",  "function", "goto",
+    "if",        "import",  "in",       "initial",  "inline",    "inner",   "input",    "int",
+    "long",      "loop",    "model",    "mutable",  "namespace", "new",     "not",      "operator",
+    "or",        "outer",   "output",   "package",  "parameter", "partial", "private",  "protected",
+    "public",    "record",  "register", "requires", "restrict",  "return",  "short",    "signed",
+    "sizeof",    "static",  "std",      "stream",   "struct",    "switch",  "template", "then",
+    "this",      "throw",   "true",     "try",      "type",      "typedef", "typename", "union",
+    "unsigned",  "using",   "virtual",  "void",     "volatile",  "when",    "while",    "within",
+    "xor"};
 
 std::string read_export_name(const TomlTable& table) {
   std::string name = table.text_or("name", "");
   if (name.empty()) return name;
   constexpr std::size_t longest = 40;
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  const bool identifier = letter(name.front()) && name.size() <= longest && std::ranges::all_of(name, [&](char c) {
-                            return letter(c) || c == '_' || (c >= '0' && c <= '9');
-                          });
+  const bool identifier =
+      letter(name.front()) && name.size() <= longest &&
+      std::ranges::all_of(name, [&](char c) { return letter(c) || c == '_' || (c >= '0' && c <= '9'); });
   if (!identifier)
-    table.fail("name", fmt::format("must be a letter and letters, digits or low lines behind it, {} at most", longest));
+    table.fail("name", fmt::format("must be a letter and letters, digits or low lines behind it, {} at most",
+                                   longest));
   else if (std::ranges::find(reserved, name) != std::end(reserved))
     table.fail("name", "must be no word of C, C++ or Modelica itself");
   return name;
@@ -238,7 +246,8 @@ WireFile read_document(TomlDocument& document, const std::filesystem::path& file
         .fail(nominal.test.pusher.tilt != 0.0 ? "tilt_deg" : "vector_m_s2",
               "must keep the push in the plane of the wire: only such pushes are distilled");
   }
-  const bool numbers_known = std::isfinite(nominal.test.wire.length) && std::isfinite(nominal.test.mount.span);
+  const bool numbers_known =
+      std::isfinite(nominal.test.wire.length) && std::isfinite(nominal.test.mount.span);
   const TomlTable ranges = root.table("ranges");
   read_ranges(ranges, nominal, numbers_known);
   read_law_positions(root.table("laws"), nominal);
@@ -258,7 +267,8 @@ bool WireCase::symmetric() const noexcept {
 }
 
 bool WireCase::dissipates() const noexcept {
-  return test.pusher.friction > 0.0 || test.mount.slip_tension || test.wire.yielding || test.wire.strand_friction;
+  return test.pusher.friction > 0.0 || test.mount.slip_tension || test.wire.yielding ||
+         test.wire.strand_friction;
 }
 
 double default_travel(const coupling::PushProblem& test) {
@@ -266,7 +276,9 @@ double default_travel(const coupling::PushProblem& test) {
   const double slack = test.wire.length - span;
   // Height of two straight pieces of a wire of this length, and of the shallow buckled shape (the first mode: its
   // shortening is pi^2 h^2/(4 span) between clamps and between pins).
-  const auto taut = [&](double length) { return 0.5 * std::sqrt(std::max(0.0, length * length - span * span)); };
+  const auto taut = [&](double length) {
+    return 0.5 * std::sqrt(std::max(0.0, length * length - span * span));
+  };
   const double bulge = 2.0 / std::numbers::pi * std::sqrt(span * std::max(0.0, slack));
   const double stretched = taut((1.0 + proof_strain) * std::max(test.wire.length, span));
   const bool inward = test.pusher.direction == coupling::PushDirection::inward;

@@ -60,7 +60,7 @@ struct WireFile {
   std::vector<WireCase> cases;  ///< the first has the first value of every list
   DistilSettings settings;
   std::optional<ImpactSettings> impacts;  ///< damping from dynamic runs is asked
-  std::string export_name;                ///< what keeps exports apart: namespace, prefix, package; empty: none
+  std::string export_name;  ///< what keeps exports apart: namespace, prefix, package; empty: none
 };
 
 /// Travel from first touch at which the wire, taken as two straight pieces at mid-span, is stretched by the strain that

@@ -61,10 +61,11 @@ std::string identity_of(const BenchmarkCase& c) {
   return fmt::format("{:016x}", base::fingerprint(all));
 }
 
-/// Of an archived history, byte by byte: what is said about it belongs to this one and to no other.
-std::string fingerprint_of(const std::filesystem::path& history) {
-  constexpr std::size_t longest = std::size_t{1} << 30u;  // [byte]
-  return fmt::format("{:016x}", base::fingerprint(base::read_own(history, longest)));
+constexpr std::size_t longest_history = std::size_t{1} << 30u;  // [byte]
+
+/// Fingerprint of the text of an archived history, byte by byte: its JSON file belongs to this history and to no other.
+std::string fingerprint_of(const std::string& history) {
+  return fmt::format("{:016x}", base::fingerprint(history));
 }
 
 /// The numbers of a column of a history; none where it has no such column.
@@ -76,8 +77,8 @@ const std::vector<double>& numbers_of(const History& history, const std::string&
 
 /// What the integration has made or lost, over the most that moved and was stretched at a time; none where the history does not say.
 std::optional<double> energy_error(const History& history) {
-  const std::vector<double>&error = numbers_of(history, "integrator_J"), &kinetic = numbers_of(history, "kinetic_J"),
-        &strain = numbers_of(history, "strain_J");
+  const std::vector<double>&error = numbers_of(history, "integrator_J"),
+        &kinetic = numbers_of(history, "kinetic_J"), &strain = numbers_of(history, "strain_J");
   if (error.empty() || kinetic.size() != error.size() || strain.size() != error.size()) return std::nullopt;
   double worst = 0.0, most = 0.0;
   for (std::size_t i = 0; i < error.size(); ++i) {
@@ -133,8 +134,7 @@ ModelRun run_model(const BenchmarkCase& c, const BenchmarkModel& model, const Wa
   HistoryTable table({}, 1);
   json result;
   const auto begin = std::chrono::steady_clock::now();
-  r.end = runner.run(
-      all_fixed(c, model), [&] { return watch.stopped(); }, result, &table);
+  r.end = runner.run(all_fixed(c, model), {{}, watch.stop}, result, &table);
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (r.end.status != CaseEnd::Status::done) return r;
   try {
@@ -154,9 +154,7 @@ std::optional<double> largest_step(const BenchmarkCase& c, const BenchmarkModel&
   until.push_back({"duration_s", fmt::format("{}", *c.step_at)});
   until.push_back({"output.modes", "true"});
   json result;
-  const CaseEnd end = CaseRunner(model.file, "", model.file)
-                          .run(
-                              until, [&] { return watch.stopped(); }, result, nullptr);
+  const CaseEnd end = CaseRunner(model.file, "", model.file).run(until, {{}, watch.stop}, result);
   if (end.status != CaseEnd::Status::done) return std::nullopt;
   const json step = result.value("largest_explicit_step_s", json());
   return step.is_number() ? std::optional(step.get<double>()) : std::nullopt;
@@ -190,14 +188,15 @@ json scores_json(const Scores& scores) {
 
 /// Of a CSV file with x and the quantities by their names in the benchmark.
 Tracks read_tracks(const std::filesystem::path& file, const BenchmarkCase& c) {
-  std::vector<base::CsvColumn> columns{
-      {c.x, base::CsvColumn::Presence::required, base::Range::finite(), 1.0, base::CsvColumn::Order::non_decreasing}};
+  std::vector<base::CsvColumn> columns{{c.x, base::CsvColumn::Presence::required, base::Range::finite(), 1.0,
+                                        base::CsvColumn::Order::non_decreasing}};
   for (const auto& [name, column] : c.columns) columns.push_back({name});
   base::CsvTable table = base::read_csv(file, columns);
   if (table.rows < 2) throw base::InputError({file.string(), 0, "", "", "must have at least two rows"});
   Tracks tracks;
   std::size_t k = 0;
-  for (const auto& [name, column] : c.columns) tracks[name] = {table.columns.front(), std::move(table.columns[++k])};
+  for (const auto& [name, column] : c.columns)
+    tracks[name] = {table.columns.front(), std::move(table.columns[++k])};
   return tracks;
 }
 
@@ -241,7 +240,8 @@ void check_benchmark_case(const BenchmarkFile& benchmark, const BenchmarkCase& c
       throw base::InputError(std::move(problems));
     }
     if (table.missing().empty()) continue;
-    throw base::InputError({benchmark.file.string(), 0, fmt::format("cases[{}].quantities", c.name), table.missing(),
+    throw base::InputError({benchmark.file.string(), 0, fmt::format("cases[{}].quantities", c.name),
+                            table.missing(),
                             fmt::format("must be a column of the history of {}{}", model.file.string(),
                                         base::nearest_or_all(table.missing(), table.names()))});
   }
@@ -257,16 +257,18 @@ BenchmarkReference read_reference(const BenchmarkFile& benchmark, const Benchmar
   BenchmarkReference reference;
   reference.tracks = read_tracks(csv, c);
   try {
-    const json j = json::parse(base::read_own(about, std::size_t{1} << 20u));
+    const json j = json::parse(base::read_text(about, std::size_t{1} << 20u));
     if (j.at("schema") != reference_schema)
       throw std::runtime_error(fmt::format("schema must be {}", reference_schema));
-    if (j.at("history") != fingerprint_of(csv))
+    if (j.at("history") != fingerprint_of(base::read_text(csv, longest_history)))
       throw std::runtime_error(fmt::format("{} has been changed since", csv.filename().string()));
     for (const auto& [name, column] : c.columns) reference.bars[name] = score_of_json(j.at("bars").at(name));
-    for (const study::Collected& field : c.outcome) reference.outcome[field.name] = j.at("outcome").at(field.name);
+    for (const study::Collected& field : c.outcome)
+      reference.outcome[field.name] = j.at("outcome").at(field.name);
     reference.stale = j.at("identity") != identity_of(c);
   } catch (const std::exception& error) {
-    throw base::InputError({about.string(), 0, "", "", fmt::format("is damaged or of another case: {}", error.what())});
+    throw base::InputError(
+        {about.string(), 0, "", "", fmt::format("is damaged or of another case: {}", error.what())});
   }
   return reference;
 }
@@ -300,7 +302,7 @@ CaseEnd archive_case(const BenchmarkFile& benchmark, const BenchmarkCase& c, con
     csv.row(cells);
   }
   csv.commit();
-  about["history"] = fingerprint_of(file);
+  about["history"] = fingerprint_of(base::read_own(file, longest_history));
   base::write_text(benchmark.references / (c.name + ".json"), about.dump(1) + "\n");
   return {};
 }
@@ -329,7 +331,8 @@ BenchmarkRow run_benchmark_model(const BenchmarkCase& c, const BenchmarkModel& m
   return row;
 }
 
-json benchmark_json(const BenchmarkFile& benchmark, const std::vector<BenchmarkAnswer>& answers, std::size_t asked) {
+json benchmark_json(const BenchmarkFile& benchmark, const std::vector<BenchmarkAnswer>& answers,
+                    std::size_t asked) {
   json cases = json::array();
   std::size_t done = 0;
   for (const BenchmarkAnswer& answer : answers) {
@@ -366,8 +369,9 @@ json benchmark_json(const BenchmarkFile& benchmark, const std::vector<BenchmarkA
 }
 
 void give_scores(TableSink& sink, const std::vector<BenchmarkAnswer>& answers) {
-  sink.begin({"case", "model", "status", "quantity", "peak", "peak_bar", "integral", "integral_bar", "rms", "rms_bar",
-              "touch", "touch_bar", "same_touch", "covered", "energy_error", "largest_explicit_step_s", "wall_s"});
+  sink.begin({"case", "model", "status", "quantity", "peak", "peak_bar", "integral", "integral_bar", "rms",
+              "rms_bar", "touch", "touch_bar", "same_touch", "covered", "energy_error",
+              "largest_explicit_step_s", "wall_s"});
   const auto optional = [](const std::optional<double>& value) {
     return value ? base::CsvCell(*value) : base::CsvCell();
   };
@@ -383,9 +387,9 @@ void give_scores(TableSink& sink, const std::vector<BenchmarkAnswer>& answers) {
       for (const auto& [name, s] : row.scores) {
         const study::TrackScore& bar = answer.reference.bars.at(name);
         sink.row({std::string_view(answer.asked->name), std::string_view(row.model), std::string_view("done"),
-                  std::string_view(name), s.peak, bar.peak, s.integral, bar.integral, s.rms, bar.rms, optional(s.touch),
-                  optional(bar.touch), s.same_touch ? 1LL : 0LL, s.covered, optional(row.energy_error),
-                  optional(row.largest_step), row.seconds});
+                  std::string_view(name), s.peak, bar.peak, s.integral, bar.integral, s.rms, bar.rms,
+                  optional(s.touch), optional(bar.touch), s.same_touch ? 1LL : 0LL, s.covered,
+                  optional(row.energy_error), optional(row.largest_step), row.seconds});
       }
     }
   }

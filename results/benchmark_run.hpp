@@ -51,14 +51,16 @@ struct BenchmarkAnswer {
 void check_benchmark_case(const study::BenchmarkFile& benchmark, const study::BenchmarkCase& c);
 
 /// The archive of a case. Throws base::InputError where there is none, or where it is damaged.
-[[nodiscard]] BenchmarkReference read_reference(const study::BenchmarkFile& benchmark, const study::BenchmarkCase& c);
+[[nodiscard]] BenchmarkReference read_reference(const study::BenchmarkFile& benchmark,
+                                                const study::BenchmarkCase& c);
 
 /// Runs the refinements of a case and writes the archive: NAME.csv and NAME.json. Says why where one does not end.
 [[nodiscard]] CaseEnd archive_case(const study::BenchmarkFile& benchmark, const study::BenchmarkCase& c,
                                    const Watch& watch);
 
 /// Runs, or reads, a model of a case and scores it.
-[[nodiscard]] BenchmarkRow run_benchmark_model(const study::BenchmarkCase& c, const study::BenchmarkModel& model,
+[[nodiscard]] BenchmarkRow run_benchmark_model(const study::BenchmarkCase& c,
+                                               const study::BenchmarkModel& model,
                                                const BenchmarkReference& reference, const Watch& watch);
 
 /// benchmark.json: the answers so far, and how many rows there were to be.

@@ -11,9 +11,9 @@
 #include "results/curves.hpp"
 #include "results/law_json.hpp"
 #include "results/motion_history.hpp"
-#include "results/motion_summary.hpp"
 #include "results/push_result.hpp"
 #include "results/record_json.hpp"
+#include "results/simulation.hpp"
 #include "results/trace_json.hpp"
 #include "scenario/scenario.hpp"
 
@@ -33,7 +33,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using Overrides = std::vector<base::Override>;
-using Stop = std::function<bool()>;
 using Status = CaseEnd::Status;
 
 /// How a solver ended.
@@ -47,24 +46,22 @@ bool keeps_history(const CaseEnd& end) {
   return end.status == Status::done || end.status == Status::failed;
 }
 
-CaseEnd simulate(const scenario::Scenario& asked, const Stop& stop, json& result, TableSink* history) {
-  const scenario::NamedMotion& one = asked.motions.runs.front();
-  coupling::MotionOptions options = one.options;
-  options.stop = stop;
-  MotionRecord record;
-  record.result = coupling::simulate(one.motion, options, [&](const coupling::MotionSample& sample) {
-    record.samples.push_back(sample);
-    return false;
-  });
-  const auto& report = record.result.report;
-  CaseEnd end = ending(report.usable(), report.termination, report.message);
-  if (history != nullptr && keeps_history(end)) give_history(*history, one.motion, record.samples);
-  if (end.status == Status::done) result = motion_summary(asked, {one, record.samples, record.result}, stop);
+CaseEnd simulate(const scenario::Scenario& asked, const Watch& watch, json& result, TableSink* history) {
+  const std::vector<MotionRecord> records = simulate_all(asked.motions.runs, watch);
+  CaseEnd end;
+  for (const MotionRecord& record : records) {
+    const numerics::SolveReport& report = record.result.report;
+    if (end.status == Status::done) end = ending(report.usable(), report.termination, report.message);
+  }
+  if (history != nullptr && keeps_history(end))
+    give_history(*history, asked.motions.runs.front().motion, records.front().samples);
+  if (end.status == Status::done) result = simulation_document(asked, records, watch);
   return end;
 }
 
-CaseEnd push(const identification::Experiment& experiment, const Stop& stop, json& result, TableSink* history) {
-  PushResult pushed = results::push(experiment, {{}, stop});
+CaseEnd push(const identification::Experiment& experiment, const Watch& watch, json& result,
+             TableSink* history) {
+  PushResult pushed = results::push(experiment, watch);
   CaseEnd end;
   for (std::size_t k = 0; k < pushed.predictions.size() && end.status == Status::done; ++k) {
     const numerics::SolveReport& report = pushed.predictions[k].curve.curve.report;
@@ -76,34 +73,56 @@ CaseEnd push(const identification::Experiment& experiment, const Stop& stop, jso
   return end;
 }
 
-CaseEnd trace(const identification::Experiment& experiment, bool whole, const Stop& stop, json& result,
-              TableSink* history) {
-  identification::TraceOptions options = whole ? identification::TraceOptions{} : fitting_options();
-  options.progress = [&](const std::string&) { return !stop(); };
-  const identification::Trace traced = identification::trace(experiment, options);
-  if (!traced.report.usable()) return ending(false, traced.report.termination, traced.report.message);
-  if (traced.interrupted) return {Status::stopped, "interrupted"};
-  if (history != nullptr) give_curves(*history, traced.series, traced.final_predictions, curve_columns(traced));
-  result = whole ? trace_json(experiment, traced) : fit_json(experiment, traced);
-  return {};
+/// Who watches a tracing: sees its stages, and stops it at the next one.
+std::function<bool(const std::string&)> stages(const Watch& watch) {
+  return [&watch](const std::string& stage) {
+    watch.say(stage);
+    return !watch.stopped();
+  };
 }
 
-CaseEnd trace_records(const identification::RecordSet& set, bool whole, const Stop& stop, json& result,
+/// How a tracing ended. What failed because it was stopped was stopped.
+template <class Trace>
+CaseEnd ending(const Trace& traced, const Watch& watch) {
+  if (traced.interrupted || (!traced.report.usable() && watch.stopped()))
+    return {Status::stopped, "interrupted"};
+  return ending(traced.report.usable(), traced.report.termination, traced.report.message);
+}
+
+CaseEnd trace(const identification::Experiment& experiment, bool whole, const Watch& watch, json& result,
+              TableSink* history) {
+  identification::TraceOptions options = whole ? identification::TraceOptions{} : fitting_options();
+  options.progress = stages(watch);
+  options.stop = watch.stop;
+  const identification::Trace traced = identification::trace(experiment, options);
+  const CaseEnd end = ending(traced, watch);
+  if (end.status != Status::done) return end;
+  if (history != nullptr)
+    give_curves(*history, traced.series, traced.final_predictions, curve_columns(traced));
+  result = whole ? trace_document(experiment, traced) : fit_json(experiment, traced);
+  return end;
+}
+
+CaseEnd trace_records(const identification::RecordSet& set, bool whole, const Watch& watch, json& result,
                       TableSink* history) {
   identification::RecordTraceOptions options;
   options.effects = whole;
-  options.progress = [&](const std::string&) { return !stop(); };
+  options.progress = stages(watch);
+  options.stop = watch.stop;
   const identification::RecordTrace traced = identification::trace_records(set, options);
-  if (!traced.report.usable()) return ending(false, traced.report.termination, traced.report.message);
-  if (traced.interrupted) return {Status::stopped, "interrupted"};
+  const CaseEnd end = ending(traced, watch);
+  if (end.status != Status::done) return end;
   if (history != nullptr) give_record_curves(*history, set, traced);
   result = whole ? record_trace_json(set, traced) : record_fit_json(set, traced);
-  return {};
+  return end;
 }
 
-CaseEnd distil(const reduction::WireFile& wire, const Stop& stop, json& result) {
+CaseEnd distil(const reduction::WireFile& wire, const Watch& watch, json& result) {
   const reduction::Distillation distilled =
-      reduction::distil(wire, {}, [&](std::size_t, std::size_t) { return !stop(); });
+      reduction::distil(wire, {}, [&](std::size_t finished, std::size_t wanted) {
+        watch.say(fmt::format("curve {} of {}", finished, wanted));
+        return !watch.stopped();
+      });
   const numerics::SolveReport& report = distilled.report;
   if (!report.usable()) return ending(false, report.termination, report.message);
   result = law_json(wire, distilled);
@@ -134,7 +153,8 @@ std::vector<std::string> verbs_of(const std::string& schema) {
 void add_contents(const fs::path& file, std::set<fs::path>& seen, std::string& all);
 
 /// Files that a tree names by its texts, beside `folder`.
-void add_named(const base::TomlNode& node, const fs::path& folder, std::set<fs::path>& seen, std::string& all) {
+void add_named(const base::TomlNode& node, const fs::path& folder, std::set<fs::path>& seen,
+               std::string& all) {
   for (const base::TomlEntry& entry : node.entries) add_named(entry.node, folder, seen, all);
   for (const base::TomlNode& item : node.items) add_named(item, folder, seen, all);
   constexpr std::size_t longest = 4096;  // of a path
@@ -165,7 +185,8 @@ void add_contents(const fs::path& file, std::set<fs::path>& seen, std::string& a
 
 }  // namespace
 
-CaseRunner::CaseRunner(fs::path file, const std::string& verb, const fs::path& asked_by) : file_(std::move(file)) {
+CaseRunner::CaseRunner(fs::path file, const std::string& verb, const fs::path& asked_by)
+    : file_(std::move(file)) {
   const std::string schema = schema_of(file_);
   of_records_ = schema.starts_with("snare-record/");
   const std::vector<std::string> verbs = verbs_of(schema);
@@ -176,8 +197,9 @@ CaseRunner::CaseRunner(fs::path file, const std::string& verb, const fs::path& a
   }
   verb_ = verb.empty() ? verbs.front() : verb;
   if (std::ranges::find(verbs, verb_) == verbs.end()) {
-    throw base::InputError({asked_by.string(), 0, "verb", verb,
-                            fmt::format("must be one of {} for a file of {}", fmt::join(verbs, ", "), schema)});
+    throw base::InputError(
+        {asked_by.string(), 0, "verb", verb,
+         fmt::format("must be one of {} for a file of {}", fmt::join(verbs, ", "), schema)});
   }
 }
 
@@ -196,23 +218,29 @@ void CaseRunner::check(const Overrides& overrides, TableSink* names) const {
         identification::read_experiment(file_, identification::parameters(), overrides);
     if (names == nullptr) return;
     const std::vector<identification::Prediction> none(experiment.series.size());
-    give_curves(*names, experiment.series, none, verb_ == "push" ? std::vector<CurveColumn>() : curve_columns({}));
+    give_curves(*names, experiment.series, none,
+                verb_ == "push" ? std::vector<CurveColumn>() : curve_columns({}));
   }
 }
 
-CaseEnd CaseRunner::run(const Overrides& overrides, const Stop& stop, json& result, TableSink* history) const {
+CaseEnd CaseRunner::run_or_throw(const Overrides& overrides, const Watch& watch, json& result,
+                                 TableSink* history) const {
+  if (verb_ == "simulate") return simulate(scenario::read_scenario(file_, overrides), watch, result, history);
+  if (verb_ == "distil") return distil(reduction::read_wire_file(file_, overrides), watch, result);
+  if (of_records_) {
+    return trace_records(identification::read_records(file_, overrides), verb_ == "trace", watch, result,
+                         history);
+  }
+  const identification::Experiment experiment =
+      identification::read_experiment(file_, identification::parameters(), overrides);
+  if (verb_ == "push") return push(experiment, watch, result, history);
+  return trace(experiment, verb_ == "trace", watch, result, history);
+}
+
+CaseEnd CaseRunner::run(const Overrides& overrides, const Watch& watch, json& result,
+                        TableSink* history) const {
   try {
-    if (verb_ == "simulate") {
-      return simulate(scenario::read_scenario(file_, overrides), stop, result, history);
-    }
-    if (verb_ == "distil") return distil(reduction::read_wire_file(file_, overrides), stop, result);
-    if (of_records_) {
-      return trace_records(identification::read_records(file_, overrides), verb_ == "trace", stop, result, history);
-    }
-    const identification::Experiment experiment =
-        identification::read_experiment(file_, identification::parameters(), overrides);
-    if (verb_ == "push") return push(experiment, stop, result, history);
-    return trace(experiment, verb_ == "trace", stop, result, history);
+    return run_or_throw(overrides, watch, result, history);
   } catch (const base::InputError& error) {
     return {Status::refused, one_line(error.what())};
   } catch (const std::bad_alloc&) {

@@ -2,11 +2,11 @@
 
 #include "base/toml_tree.hpp"
 #include "results/result_table.hpp"
+#include "results/watch.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -45,10 +45,13 @@ class CaseRunner {
   /// case would have, where it has one, and no row.
   void check(const std::vector<base::Override>& overrides, TableSink* names = nullptr) const;
 
-  /// Never throws but std::bad_alloc for the words of a failure. stop: asked often; true ends the case. result: set where it is done.
-  /// history: gets the table of a case that is done, or whose solver could not finish a motion or a push: as far as it came.
-  [[nodiscard]] CaseEnd run(const std::vector<base::Override>& overrides, const std::function<bool()>& stop,
+  /// Never throws but std::bad_alloc for the words of a failure. watch: asked often whether the case is to end. result: set where it is
+  /// done. history: gets the table of a case that is done, or whose solver could not finish a motion or a push: as far as it came.
+  [[nodiscard]] CaseEnd run(const std::vector<base::Override>& overrides, const Watch& watch,
                             nlohmann::json& result, TableSink* history = nullptr) const;
+  /// The same, but throws what reading and computing throw: base::InputError, std::bad_alloc, what a library has refused.
+  [[nodiscard]] CaseEnd run_or_throw(const std::vector<base::Override>& overrides, const Watch& watch,
+                                     nlohmann::json& result, TableSink* history = nullptr) const;
 
  private:
   std::filesystem::path file_;

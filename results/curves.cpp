@@ -58,7 +58,8 @@ const PointColumn after_error[] = {{"transverse_force_N", &PushPoint::transverse
 }  // namespace
 
 void give_curves(TableSink& sink, const std::vector<identification::Series>& series,
-                 const std::vector<identification::Prediction>& predictions, const std::vector<CurveColumn>& more) {
+                 const std::vector<identification::Prediction>& predictions,
+                 const std::vector<CurveColumn>& more) {
   std::vector<std::string> names{"series", "displacement_mm"};
   for (const PointColumn& column : up_to_error) names.emplace_back(column.name);
   names.emplace_back("discretisation_error_N");
@@ -75,9 +76,12 @@ void give_curves(TableSink& sink, const std::vector<identification::Series>& ser
     const identification::Prediction& prediction = predictions[k];
     const std::vector<double>& displacement = identification::measured_displacement(series[k]);
     // A row of a point, or of a displacement before the touch.
-    const auto write = [&](double at, const PushPoint* point, CsvCell error, std::size_t reading, bool asked) {
+    const auto write = [&](double at, const PushPoint* point, CsvCell error, std::size_t reading,
+                           bool asked) {
       std::vector<CsvCell> row{std::string_view(series[k].name), in_mm(at)};
-      const auto cell = [&](const PointColumn& c) { return point != nullptr ? c.cell(*point) : c.before_touch; };
+      const auto cell = [&](const PointColumn& c) {
+        return point != nullptr ? c.cell(*point) : c.before_touch;
+      };
       for (const PointColumn& column : up_to_error) row.push_back(cell(column));
       row.push_back(error);
       for (const PointColumn& column : after_error) row.push_back(cell(column));
@@ -88,7 +92,8 @@ void give_curves(TableSink& sink, const std::vector<identification::Series>& ser
         row.push_back(has ? CsvCell(column.values[k][reading]) : CsvCell());
       }
       const bool computed = read && reading < prediction.force.size();
-      if (any) row.push_back(computed ? CsvCell(measured[k][reading] - prediction.force[reading]) : CsvCell());
+      if (any)
+        row.push_back(computed ? CsvCell(measured[k][reading] - prediction.force[reading]) : CsvCell());
       sink.row(row);
     };
     for (std::size_t i = 0; i < prediction.before_touch; ++i) write(displacement[i], nullptr, {}, i, true);
@@ -99,15 +104,16 @@ void give_curves(TableSink& sink, const std::vector<identification::Series>& ser
       // Branch switching adds points between the readings.
       const bool asked = reading < displacement.size() && p.travel == displacement[reading] - offset;
       const double error = prediction.curve.discretisation_error[i];
-      write(asked ? displacement[reading] : p.travel + offset, &p, std::isfinite(error) ? CsvCell(error) : CsvCell(),
-            reading, asked);
+      write(asked ? displacement[reading] : p.travel + offset, &p,
+            std::isfinite(error) ? CsvCell(error) : CsvCell(), reading, asked);
       if (asked) ++reading;
     }
   }
 }
 
 void write_curves(const std::filesystem::path& file, const std::vector<identification::Series>& series,
-                  const std::vector<identification::Prediction>& predictions, const std::vector<CurveColumn>& more) {
+                  const std::vector<identification::Prediction>& predictions,
+                  const std::vector<CurveColumn>& more) {
   CsvSink csv(file);
   give_curves(csv, series, predictions, more);
   csv.commit();

@@ -19,7 +19,8 @@ struct CurveColumn {
 /// The table of curves.csv: a row a point of every prediction, in the order in which the points were reached.
 /// Columns: docs/curves_csv.md.
 void give_curves(TableSink& sink, const std::vector<identification::Series>& series,
-                 const std::vector<identification::Prediction>& predictions, const std::vector<CurveColumn>& more = {});
+                 const std::vector<identification::Prediction>& predictions,
+                 const std::vector<CurveColumn>& more = {});
 
 /// The same, written into a file.
 void write_curves(const std::filesystem::path& file, const std::vector<identification::Series>& series,

@@ -29,7 +29,8 @@ namespace {
 /// The calls of the HDF5 library that are made here, looked up when they are wanted first. The variables
 /// behind its constants (H5T_NATIVE_DOUBLE, H5P_DATASET_CREATE) are looked up by name, too.
 class Api {
-  void* library_ = ::dlopen(SNARE_HDF5_LIBRARY, RTLD_NOW | RTLD_LOCAL);  // before those that are looked up in it
+  void* library_ =
+      ::dlopen(SNARE_HDF5_LIBRARY, RTLD_NOW | RTLD_LOCAL);  // before those that are looked up in it
 
  public:
   static const Api& get() {
@@ -97,8 +98,9 @@ class Api {
   template <class Symbol>
   [[nodiscard]] Symbol symbol(const char* name) const {
     if (library_ == nullptr) {
-      throw std::runtime_error(fmt::format(
-          "histories need the HDF5 library (Debian: libhdf5-103-1), which cannot be opened: {}", ::dlerror()));
+      throw std::runtime_error(
+          fmt::format("histories need the HDF5 library (Debian: libhdf5-103-1), which cannot be opened: {}",
+                      ::dlerror()));
     }
     void* found = ::dlsym(library_, name);
     if (found == nullptr) throw std::runtime_error(fmt::format("{} has no {}", SNARE_HDF5_LIBRARY, name));
@@ -227,9 +229,11 @@ void write_attributes(hid_t object, const Hdf5Attributes& attributes) {
       const char* from = text->c_str();
       write_attribute(object, name, type, type, one, &from);
     } else if (const auto* whole = std::get_if<std::int64_t>(&value)) {
-      write_attribute(object, name, api.constant("H5T_STD_I64LE_g"), api.constant("H5T_NATIVE_INT64_g"), one, whole);
+      write_attribute(object, name, api.constant("H5T_STD_I64LE_g"), api.constant("H5T_NATIVE_INT64_g"), one,
+                      whole);
     } else if (const auto* number = std::get_if<double>(&value)) {
-      write_attribute(object, name, api.constant("H5T_IEEE_F64LE_g"), api.constant("H5T_NATIVE_DOUBLE_g"), one, number);
+      write_attribute(object, name, api.constant("H5T_IEEE_F64LE_g"), api.constant("H5T_NATIVE_DOUBLE_g"),
+                      one, number);
     } else {
       const auto& texts = std::get<std::vector<std::string>>(value);
       std::vector<const char*> from;
@@ -240,8 +244,8 @@ void write_attributes(hid_t object, const Hdf5Attributes& attributes) {
   }
 }
 
-void write_dataset(hid_t file, const std::string& path, std::size_t size, hid_t type, hid_t memory, const void* from,
-                   const Hdf5Attributes& attributes) {
+void write_dataset(hid_t file, const std::string& path, std::size_t size, hid_t type, hid_t memory,
+                   const void* from, const Hdf5Attributes& attributes) {
   const Api& api = Api::get();
   const Handle made = timeless("H5P_CLS_DATASET_CREATE_ID_g");
   if (size > 0) {
@@ -252,7 +256,8 @@ void write_dataset(hid_t file, const std::string& path, std::size_t size, hid_t 
   }
   const Handle link = properties("H5P_CLS_LINK_CREATE_ID_g");
   check(api.H5Pset_create_intermediate_group(link, 1));
-  Handle dataset(api.H5Dcreate2(file, path.c_str(), type, space_of(size), link, made, H5P_DEFAULT), api.H5Dclose);
+  Handle dataset(api.H5Dcreate2(file, path.c_str(), type, space_of(size), link, made, H5P_DEFAULT),
+                 api.H5Dclose);
   if (size > 0) check(api.H5Dwrite(dataset, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, from));
   write_attributes(dataset, attributes);
   dataset.close();
@@ -262,7 +267,8 @@ constexpr hsize_t seal_size = 512;  // the least block that HDF5 leaves to its u
 
 /// Throws std::system_error when the file cannot be closed as it should.
 void close(base::FileHandle file) {
-  if (std::fclose(file.release()) != 0) throw std::system_error(errno, std::generic_category(), "its checksum");
+  if (std::fclose(file.release()) != 0)
+    throw std::system_error(errno, std::generic_category(), "its checksum");
 }
 
 /// What the seal of a file must be: SHA-256 over its bytes after the seal, chained over chunks of a megabyte.

@@ -39,7 +39,8 @@ class Hdf5Writer {
   void group(const std::string& path, const Hdf5Attributes& attributes);
   /// Numbers in doubles, or texts, along one axis, compressed in chunks. numbers: in whatever unit the attributes say.
   void dataset(const std::string& path, const std::vector<double>& numbers, const Hdf5Attributes& attributes);
-  void dataset(const std::string& path, const std::vector<std::string>& texts, const Hdf5Attributes& attributes);
+  void dataset(const std::string& path, const std::vector<std::string>& texts,
+               const Hdf5Attributes& attributes);
   /// The file is whole, closed and sealed: its first bytes, which readers of HDF5 pass over, have a checksum of the others. To be
   /// called once, nothing after it.
   void close();
@@ -53,6 +54,7 @@ class Hdf5Writer {
 [[nodiscard]] bool is_whole_hdf5(const std::filesystem::path& file);
 
 /// A text attribute of the file itself; nothing where there is no such file, it is no HDF5 file, or has no such attribute.
-[[nodiscard]] std::optional<std::string> text_attribute(const std::filesystem::path& file, const std::string& name);
+[[nodiscard]] std::optional<std::string> text_attribute(const std::filesystem::path& file,
+                                                        const std::string& name);
 
 }  // namespace snare::results

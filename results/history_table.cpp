@@ -54,7 +54,8 @@ void HistoryTable::row(const std::vector<base::CsvCell>& cells) {
     } else if (const auto* count = std::get_if<long long>(&cell)) {
       column.numbers.push_back(static_cast<double>(*count));
     } else if (const auto* number = std::get_if<double>(&cell)) {
-      if (!std::isfinite(*number)) throw std::domain_error(fmt::format("history: {} is {}", column.name, *number));
+      if (!std::isfinite(*number))
+        throw std::domain_error(fmt::format("history: {} is {}", column.name, *number));
       column.numbers.push_back(*number);
     } else {
       column.numbers.push_back(std::numeric_limits<double>::quiet_NaN());

@@ -4,6 +4,7 @@
 #include "reduction/law_simulators.hpp"
 #include "results/in_mm.hpp"
 #include "results/version.hpp"
+#include "results/warnings.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -42,15 +43,18 @@ json law_entry(const FittedLaw& law) {
   json covariance = json::array();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    parameters[names[i].name] = {
-        {"value", law.values[k]}, {"unit", names[i].unit}, {"stderr", std::sqrt(std::max(0.0, law.covariance(k, k)))}};
+    parameters[names[i].name] = {{"value", law.values[k]},
+                                 {"unit", names[i].unit},
+                                 {"stderr", std::sqrt(std::max(0.0, law.covariance(k, k)))}};
     json row = json::array();
-    for (std::size_t j = 0; j < names.size(); ++j) row.push_back(law.covariance(k, static_cast<Eigen::Index>(j)));
+    for (std::size_t j = 0; j < names.size(); ++j)
+      row.push_back(law.covariance(k, static_cast<Eigen::Index>(j)));
     covariance.push_back(row);
   }
-  return {{"name", law.form->name()},      {"formula", law.form->formula()},         {"parameters", parameters},
-          {"covariance", covariance},      {"travel_mm", interval_in_mm(law.range)}, {"converged", law.converged},
-          {"error", error_json(law.error)}};
+  return {
+      {"name", law.form->name()},      {"formula", law.form->formula()},         {"parameters", parameters},
+      {"covariance", covariance},      {"travel_mm", interval_in_mm(law.range)}, {"converged", law.converged},
+      {"error", error_json(law.error)}};
 }
 
 json place_json(const DistilledPlace& place) {
@@ -83,7 +87,8 @@ json place_json(const DistilledPlace& place) {
                              {"rms_error_N", f.rms_error},
                              {"loop_J", f.loop}};
   } else {
-    result["damping"] = {{"source", "nothing dissipates in this wire at rest"}, {"damping_times_rate_N_m", 0.0}};
+    result["damping"] = {{"source", "nothing dissipates in this wire at rest"},
+                         {"damping_times_rate_N_m", 0.0}};
   }
   json impacts = json::array();
   for (const ImpactDamping& i : place.impacts) {
@@ -119,24 +124,26 @@ json table_error_json(const TableError& e) {
 
 json table_json(const BuiltTable& built) {
   const coupling::ForceTable& t = *built.loading;
-  json result{{"interpolation",
-               "tricubic Hermite, C1, F L^2/EI over d/L, s/L, slack/L; nodes hold the value and its derivatives "
-               "d, s, ds, e, de, se, dse, travel fastest, then position, then slack"},
-              {"travel", t.axes()[0]},
-              {"position", t.axes()[1]},
-              {"slack", t.axes()[2]},
-              {"span_m", t.span()},
-              {"force_scale_N", t.force_scale()},
-              {"mirrored", t.mirrored()},
-              {"nodes", t.nodes()},
-              {"monotone", t.proven_monotone()           ? "proven"
-                           : t.least_stiffness(4) >= 0.0 ? "sampled"
-                                                         : "no"},
-              {"error", table_error_json(built.loading_error)},
-              {"refinements", built.rounds},
-              {"curves", built.curves}};
+  json result{
+      {"interpolation",
+       "tricubic Hermite, C1, F L^2/EI over d/L, s/L, slack/L; nodes hold the value and its derivatives "
+       "d, s, ds, e, de, se, dse, travel fastest, then position, then slack"},
+      {"travel", t.axes()[0]},
+      {"position", t.axes()[1]},
+      {"slack", t.axes()[2]},
+      {"span_m", t.span()},
+      {"force_scale_N", t.force_scale()},
+      {"mirrored", t.mirrored()},
+      {"nodes", t.nodes()},
+      {"monotone", t.proven_monotone()           ? "proven"
+                   : t.least_stiffness(4) >= 0.0 ? "sampled"
+                                                 : "no"},
+      {"error", table_error_json(built.loading_error)},
+      {"refinements", built.rounds},
+      {"curves", built.curves}};
   if (built.unloading) {
-    result["unloading"] = {{"nodes", built.unloading->nodes()}, {"error", table_error_json(built.unloading_error)}};
+    result["unloading"] = {{"nodes", built.unloading->nodes()},
+                           {"error", table_error_json(built.unloading_error)}};
   }
   return result;
 }
@@ -153,8 +160,10 @@ json map_json(const LawMap& map) {
     add("tensioned_wire_mm", &LawMapRow::tensioned);
     rows.push_back(entry);
   }
-  return {
-      {"position_mm", in_mm(map.position)}, {"to_mm", in_mm(map.travel.back())}, {"within", map_share}, {"rows", rows}};
+  return {{"position_mm", in_mm(map.position)},
+          {"to_mm", in_mm(map.travel.back())},
+          {"within", map_share},
+          {"rows", rows}};
 }
 
 /// The three forms for MuJoCo, one entry a law position.
@@ -162,8 +171,8 @@ json mujoco_json(const DistilledCase& one) {
   json linear = json::array(), loops = json::array();
   for (const MujocoLaw& law : mujoco_laws(one)) {
     linear.push_back(law.linear_error);
-    loops.push_back(law.loop ? json{{"loop_J", law.loop->energy}, {"largest_error_N", law.loop->largest_error}}
-                             : json());
+    loops.push_back(
+        law.loop ? json{{"loop_J", law.loop->energy}, {"largest_error_N", law.loop->largest_error}} : json());
   }
   return {{"form", "the table's curve at the position"},
           {"against", "full wire"},
@@ -181,9 +190,10 @@ json exports_json(const DistilledCase& one) {
                    {"position_mm", positions}};
   json result = json::object();
   for (const char* language : {"c", "cpp", "modelica", "python"}) {
-    result[language] = {{"form", "the table itself"},
-                        {"against", "full wire"},
-                        {"largest_error_N", std::max(one.table.loading_error.bound, one.table.unloading_error.bound)}};
+    result[language] = {
+        {"form", "the table itself"},
+        {"against", "full wire"},
+        {"largest_error_N", std::max(one.table.loading_error.bound, one.table.unloading_error.bound)}};
   }
   result["mujoco"] = mujoco_json(one);
   result["simulink"] = {{"form", "linear in travel and position"},
@@ -204,7 +214,9 @@ json case_json(const DistilledCase& one) {
   for (const DistilledPlace& place : one.places) places.push_back(place_json(place));
   const wire::WireSpecification& w = one.wire.test.wire;
   return {{"groups",
-           {{"EA_L2_over_EI", one.groups.axial}, {"R_over_L", one.groups.radius}, {"friction", one.groups.friction}}},
+           {{"EA_L2_over_EI", one.groups.axial},
+            {"R_over_L", one.groups.radius},
+            {"friction", one.groups.friction}}},
           {"wire",
            {{"bending_stiffness_Nm2", w.bending_stiffness()},
             {"axial_stiffness_N", w.axial_stiffness()},
@@ -232,6 +244,7 @@ json law_json(const WireFile& file, const Distillation& distillation) {
               {"outside_the_range", "continued linearly and flagged, or refused, as the caller chooses"},
               {"cases", json::array()}};
   for (const DistilledCase& one : distillation.cases) result["cases"].push_back(case_json(one));
+  result["warnings"] = wire_warnings(file);
   return result;
 }
 

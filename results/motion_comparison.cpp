@@ -55,7 +55,8 @@ json differences(const json& outcome, const json& reference) {
 
 }  // namespace
 
-MotionComparison with_every_model(const std::filesystem::path& file, const std::vector<base::Override>& overrides,
+MotionComparison with_every_model(const std::filesystem::path& file,
+                                  const std::vector<base::Override>& overrides,
                                   const scenario::WireMotions& motions) {
   if (motions.model_keys.empty())
     throw base::InputError(
@@ -66,7 +67,8 @@ MotionComparison with_every_model(const std::filesystem::path& file, const std::
   models.insert(models.end(), motions.law_models.begin(), motions.law_models.end());
   for (const std::string& model : models) {
     std::vector<base::Override> with_model = overrides;
-    for (const std::string& key : motions.model_keys) with_model.push_back({key, fmt::format("\"{}\"", model)});
+    for (const std::string& key : motions.model_keys)
+      with_model.push_back({key, fmt::format("\"{}\"", model)});
     try {
       scenario::NamedMotion one = scenario::read_scenario(file, with_model).motions.runs.front();
       one.name = one.model = model;
@@ -76,7 +78,8 @@ MotionComparison with_every_model(const std::filesystem::path& file, const std::
     }
   }
   if (comparison.motions.runs.empty())
-    throw base::InputError({file.string(), 0, "wires", "", "no model fits: " + comparison.left_out.front().second});
+    throw base::InputError(
+        {file.string(), 0, "wires", "", "no model fits: " + comparison.left_out.front().second});
   return comparison;
 }
 

@@ -23,7 +23,8 @@ struct MotionComparison {
                                                 const scenario::WireMotions& motions);
 
 /// compare.json of motions with every model, as far as they were run.
-[[nodiscard]] nlohmann::json comparison_json(const scenario::Scenario& asked, const MotionComparison& comparison,
+[[nodiscard]] nlohmann::json comparison_json(const scenario::Scenario& asked,
+                                             const MotionComparison& comparison,
                                              const std::vector<MotionRecord>& records);
 
 }  // namespace snare::results

@@ -38,8 +38,8 @@ class Columns {
                   const std::function<Vector3d(const MotionSample&)>& vector, double unit = 1.0) {
     for (int k = 0; k < 3; ++k)
       add(
-          fmt::format("{}{}{}", before, "xyz"[k], after), [vector, k](const MotionSample& s) { return vector(s)[k]; },
-          unit);
+          fmt::format("{}{}{}", before, "xyz"[k], after),
+          [vector, k](const MotionSample& s) { return vector(s)[k]; }, unit);
   }
 
   [[nodiscard]] std::vector<std::string> names() const {
@@ -67,7 +67,8 @@ class Columns {
 
 void add_energies(Columns& columns) {
   for (const auto& [name, energy] : energies)
-    columns.add(fmt::format("{}_J", name), [energy = energy](const MotionSample& s) { return s.energy.*energy; });
+    columns.add(fmt::format("{}_J", name),
+                [energy = energy](const MotionSample& s) { return s.energy.*energy; });
 }
 
 /// Lists of bodies and contacts.
@@ -78,7 +79,8 @@ Columns of_bodies_and_contacts(const coupling::Motion& motion) {
     columns.add_vector(
         name, "_mm", [k](const MotionSample& s) { return s.bodies[k].position; }, mm);
     columns.add(name + "qw", [k](const MotionSample& s) { return s.bodies[k].orientation.w(); });
-    columns.add_vector(name + "q", "", [k](const MotionSample& s) { return Vector3d(s.bodies[k].orientation.vec()); });
+    columns.add_vector(name + "q", "",
+                       [k](const MotionSample& s) { return Vector3d(s.bodies[k].orientation.vec()); });
     columns.add_vector(name + "v", "_m_s", [k](const MotionSample& s) { return s.bodies[k].velocity; });
     columns.add_vector(name + "w", "_rad_s", [k](const MotionSample& s) { return s.bodies[k].spin; });
   }
@@ -108,18 +110,20 @@ void add_what_carries(const coupling::Motion& motion, Columns& columns) {
       const double unit = slides ? mm : degree;
       const char* angle = slides ? "mm" : "deg";
       columns.add(
-          fmt::format("{} motor_{}", name, angle), [a, j](const MotionSample& s) { return s.arms[a].state.motor[j]; },
-          unit);
+          fmt::format("{} motor_{}", name, angle),
+          [a, j](const MotionSample& s) { return s.arms[a].state.motor[j]; }, unit);
       columns.add(
           fmt::format("{} deflection_{}", name, angle),
-          [&arm, a, j](const MotionSample& s) { return multibody::deflection(arm, s.arms[a].state, j); }, unit);
+          [&arm, a, j](const MotionSample& s) { return multibody::deflection(arm, s.arms[a].state, j); },
+          unit);
       columns.add(fmt::format("{} torque_{}", name, slides ? "N" : "Nm"),
                   [a, j](const MotionSample& s) { return s.arms[a].joint_torque[j]; });
     }
   }
   const std::vector<coupling::WireFacts> wires = motion.wire_facts();
   for (std::size_t w = 0; w < wires.size(); ++w) {
-    columns.add(wires[w].name + " tension_N", [w](const MotionSample& s) { return coupling::end_tension(s, w); });
+    columns.add(wires[w].name + " tension_N",
+                [w](const MotionSample& s) { return coupling::end_tension(s, w); });
   }
   for (std::size_t b = 0; b < motion.bushings.size(); ++b) {
     const std::string name = motion.bushings[b].name + " ";
@@ -127,8 +131,10 @@ void add_what_carries(const coupling::Motion& motion, Columns& columns) {
         name + "d", "_mm", [b](const MotionSample& s) { return s.bushings[b].shift; }, mm);
     columns.add_vector(
         name + "turn_", "_deg", [b](const MotionSample& s) { return s.bushings[b].turn; }, degree);
-    columns.add_vector(name + "f", "_N", [b](const MotionSample& s) { return s.bushings[b].on_second.force; });
-    columns.add_vector(name + "m", "_Nm", [b](const MotionSample& s) { return s.bushings[b].on_second.moment; });
+    columns.add_vector(name + "f", "_N",
+                       [b](const MotionSample& s) { return s.bushings[b].on_second.force; });
+    columns.add_vector(name + "m", "_Nm",
+                       [b](const MotionSample& s) { return s.bushings[b].on_second.moment; });
   }
 }
 
@@ -173,7 +179,8 @@ void give_telemetry(TableSink& sink, const scenario::WireMotions& motions,
   for (const auto& [time, read] : lines) {
     std::vector<base::CsvCell> row{time};
     for (std::size_t k = 0; k < readings.size(); ++k) {
-      const auto found = std::find_if(read.begin(), read.end(), [k](const auto& one) { return one.first == k; });
+      const auto found =
+          std::find_if(read.begin(), read.end(), [k](const auto& one) { return one.first == k; });
       for (const std::vector<double>& component : readings[k].values) {
         if (found == read.end())
           row.emplace_back(std::monostate{});

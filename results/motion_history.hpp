@@ -10,7 +10,8 @@ namespace snare::results {
 
 /// The table of history.csv, a line a sample: columns for every body, contact, joint, wire and bushing, by their names; energies.
 ///                                                                                                docs/scenario_file.md
-void give_history(TableSink& sink, const coupling::Motion& motion, const std::vector<coupling::MotionSample>& samples);
+void give_history(TableSink& sink, const coupling::Motion& motion,
+                  const std::vector<coupling::MotionSample>& samples);
 
 /// What the sensors of a scenario read, at their own rates: the table of telemetry.csv.
 void give_telemetry(TableSink& sink, const scenario::WireMotions& motions,

@@ -15,7 +15,8 @@ std::vector<FinishedMotion> finished_motions(const scenario::WireMotions& motion
   return finished;
 }
 
-bool left_undone(const std::vector<scenario::NamedMotion>& motions, const std::vector<MotionRecord>& records) {
+bool left_undone(const std::vector<scenario::NamedMotion>& motions,
+                 const std::vector<MotionRecord>& records) {
   return records.size() < motions.size() || std::ranges::any_of(records, [](const MotionRecord& r) {
            return r.result.report.termination == numerics::Termination::interrupted;
          });
@@ -34,7 +35,8 @@ Touches touches_of(const coupling::MotionResult& result, std::size_t contact) {
 
 std::size_t most_points(const FinishedMotion& run, std::size_t contact) {
   std::size_t most = 0;
-  for (const coupling::MotionSample& s : run.samples) most = std::max(most, s.contacts[contact].points.size());
+  for (const coupling::MotionSample& s : run.samples)
+    most = std::max(most, s.contacts[contact].points.size());
   return most;
 }
 
@@ -50,7 +52,8 @@ std::vector<scenario::Swing> swings_of(const scenario::WireMotions& motions, con
   std::vector<scenario::SwingSample> samples;
   for (const coupling::MotionSample& s : run.samples) {
     const multibody::ArmState& state = s.arms[base::at(a)].state;
-    samples.push_back({s.time, multibody::deflection(arm, state, joint), state.v[velocity] - state.motor_rate[joint]});
+    samples.push_back(
+        {s.time, multibody::deflection(arm, state, joint), state.v[velocity] - state.motor_rate[joint]});
   }
   return scenario::swings(samples);
 }

@@ -49,7 +49,8 @@ struct Touches {
 [[nodiscard]] std::size_t most_points(const FinishedMotion& run, std::size_t contact);
 
 /// Of the joint whose swings are told; none where nobody asks.
-[[nodiscard]] std::vector<scenario::Swing> swings_of(const scenario::WireMotions& motions, const FinishedMotion& run);
+[[nodiscard]] std::vector<scenario::Swing> swings_of(const scenario::WireMotions& motions,
+                                                     const FinishedMotion& run);
 
 /// Simulated over wall time [-]; 0 where no time has passed.
 [[nodiscard]] double real_time_factor(const coupling::MotionResult& result);

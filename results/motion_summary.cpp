@@ -84,8 +84,9 @@ json left_out_json(const FinishedMotion& run) {
     const coupling::MotionWire& wire = run.asked.motion.wires[k];
     if (!wire.rod.quasi_static) continue;
     const coupling::LeftOutInertia& left_out = run.result.left_out[k];
-    list.push_back(
-        {{"wire", wire.name}, {"left_out_kinetic_J", left_out.kinetic}, {"left_out_force_N", left_out.force}});
+    list.push_back({{"wire", wire.name},
+                    {"left_out_kinetic_J", left_out.kinetic},
+                    {"left_out_force_N", left_out.force}});
   }
   return list.empty() ? json::object() : json{{"quasi_static", list}};
 }
@@ -125,7 +126,8 @@ json listed_contacts_json(const FinishedMotion& run) {
   for (std::size_t k = 0; k < motion.wire_pairs.size(); ++k) {
     const std::array<int, 2>& wires = motion.wire_pairs[k].wires;
     list.push_back(listed_contact_json(
-        run, first + k, {{"wire", motion.wires[at(wires[0])].name}, {"other_wire", motion.wires[at(wires[1])].name}}));
+        run, first + k,
+        {{"wire", motion.wires[at(wires[0])].name}, {"other_wire", motion.wires[at(wires[1])].name}}));
   }
   const std::size_t laws = motion.first_contact(coupling::ContactKind::law_wire);
   const std::size_t bodies = motion.first_contact(coupling::ContactKind::bodies);
@@ -163,7 +165,8 @@ json lists_json(const FinishedMotion& run) {
   json summary = result_json(run.result);
   summary.update(strength_json(run));
   summary.update(left_out_json(run));
-  summary.update({{"bodies", json::array()}, {"contacts", listed_contacts_json(run)}, {"events", json::array()}});
+  summary.update(
+      {{"bodies", json::array()}, {"contacts", listed_contacts_json(run)}, {"events", json::array()}});
   for (std::size_t k = 0; k < motion.bodies.size(); ++k) {
     const RigidBodyState& after = run.samples.back().bodies[k];
     json body = velocities_json(run.samples.front().bodies[k], after);
@@ -249,14 +252,18 @@ json modes_json(const coupling::SmallMotions& small) {
                     {"shares", shares}});
   }
   const std::optional<double> step = small.largest_explicit_step();
-  return {{"modes", list}, {"frequencies_Hz", frequencies}, {"largest_explicit_step_s", step ? json(*step) : json()}};
+  return {{"modes", list},
+          {"frequencies_Hz", frequencies},
+          {"largest_explicit_step_s", step ? json(*step) : json()}};
 }
 
 json swings_json(const std::vector<scenario::Swing>& swings) {
   json list = json::array();
   for (const scenario::Swing& s : swings)
-    list.push_back(
-        {{"begin_s", s.begin}, {"end_s", s.end}, {"peak_deg", in_degrees(s.peak)}, {"frequency_Hz", s.frequency()}});
+    list.push_back({{"begin_s", s.begin},
+                    {"end_s", s.end},
+                    {"peak_deg", in_degrees(s.peak)},
+                    {"frequency_Hz", s.frequency()}});
   return list;
 }
 
@@ -265,7 +272,8 @@ json swings_json(const std::vector<scenario::Swing>& swings) {
 json outcome_json(const scenario::WireMotions& motions, const FinishedMotion& run) {
   const coupling::Motion& motion = run.asked.motion;
   json outcome{{"caught", nullptr}, {"events", json::array()}};
-  for (const char* key : {"first_touch_s", "tight_s", "peak_tension_N", "strength_N", "peak_force_N", "impulse_Ns"})
+  for (const char* key :
+       {"first_touch_s", "tight_s", "peak_tension_N", "strength_N", "peak_force_N", "impulse_Ns"})
     outcome[key] = json::object();
   const std::vector<coupling::WireFacts> wires = motion.wire_facts();
   for (std::size_t w = 0; w < wires.size(); ++w) {
@@ -283,7 +291,8 @@ json outcome_json(const scenario::WireMotions& motions, const FinishedMotion& ru
   }
   outcome["peak_torque_Nm"] = peak_torques(run);
   for (const coupling::PhaseBeginning& p : run.result.phases)
-    outcome["events"].push_back({{"time_s", p.time}, {"what", "phase"}, {"phase", motion.phases[at(p.phase)].name}});
+    outcome["events"].push_back(
+        {{"time_s", p.time}, {"what", "phase"}, {"phase", motion.phases[at(p.phase)].name}});
   if (!motions.capture) return outcome;
   const scenario::CaptureOutcome capture = scenario::outcome_of(*motions.capture, motion, run.samples);
   outcome["caught"] = capture.caught;

@@ -35,7 +35,8 @@ json ranges_mm(const FitRange& range) {
 }
 
 /// Values as files show them, by key.
-json shown_values(const identification::Model& model, const HypothesisMap& map, const std::vector<double>& values) {
+json shown_values(const identification::Model& model, const HypothesisMap& map,
+                  const std::vector<double>& values) {
   json result = json::object();
   for (std::size_t j = 0; j < values.size(); ++j) {
     const identification::Parameter& p = identification::parameters().at(map.hypothesis.numbers[j].key);
@@ -106,7 +107,8 @@ std::string meaning_of(const json& map, const Family& family) {
   if (family.members.size() == 1) return family.members.front()["meaning"].get<std::string>();
   const json& more = map["along_the_wire"]["more_compliance_um_N"];
   return fmt::format(
-      "something gives along the wire, by {:.0f} micrometres a newton more than declared ({:.0f} to {:.0f} with 95 %)",
+      "something gives along the wire, by {:.0f} micrometres a newton more than declared ({:.0f} to {:.0f} "
+      "with 95 %)",
       more["median"].get<double>(), more["lower95"].get<double>(), more["upper95"].get<double>());
 }
 
@@ -210,24 +212,27 @@ std::string published_inputs(const Experiment& experiment) {
   std::string all = "2;";  // of the method
   for (const identification::Series& s : experiment.series) {
     const coupling::PushProblem& t = s.test;
-    all += fmt::format("{},{},{},{},{},{},{},{},{},{},{};", t.contact_position, t.wire.length, t.wire.diameter,
-                       t.wire.bending_stiffness(), t.wire.axial_stiffness(), static_cast<int>(t.mount.kind),
-                       t.mount.span, t.pusher.radius, t.pusher.friction, static_cast<int>(t.pusher.direction),
-                       identification::Model({s}, experiment.solver)
-                           .declared(identification::parameters().at("mount_axial_compliance.compliance_m_N")));
+    all +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{};", t.contact_position, t.wire.length, t.wire.diameter,
+                    t.wire.bending_stiffness(), t.wire.axial_stiffness(), static_cast<int>(t.mount.kind),
+                    t.mount.span, t.pusher.radius, t.pusher.friction, static_cast<int>(t.pusher.direction),
+                    identification::Model({s}, experiment.solver)
+                        .declared(identification::parameters().at("mount_axial_compliance.compliance_m_N")));
     if (s.law)
-      all += fmt::format("{},{},{},{},{};", s.law->force(0.0), s.law->force(1e-3), s.law->force(2e-3), s.law->r_squared,
-                         s.law->r_squared_digits);
+      all += fmt::format("{},{},{},{},{};", s.law->force(0.0), s.law->force(1e-3), s.law->force(2e-3),
+                         s.law->r_squared, s.law->r_squared_digits);
   }
   for (const identification::Hypothesis& h : identification::published_hypotheses()) {
     all += h.name;
-    for (const identification::PriorNumber& n : h.numbers) all += fmt::format(",{},{},{}", n.key, n.lower, n.upper);
+    for (const identification::PriorNumber& n : h.numbers)
+      all += fmt::format(",{},{},{}", n.key, n.lower, n.upper);
   }
   return fmt::format("{:016x}", base::fingerprint(all));
 }
 
-json published_map_json(const Experiment& experiment, const FitRanges& ranges, const std::vector<HypothesisMap>& maps,
-                        const std::vector<std::optional<double>>& p, bool coarse) {
+json published_map_json(const Experiment& experiment, const FitRanges& ranges,
+                        const std::vector<HypothesisMap>& maps, const std::vector<std::optional<double>>& p,
+                        bool coarse) {
   const identification::Model model(experiment.series, experiment.solver);
   json result{{"schema", "snare-published-map/1"},
               {"inputs", published_inputs(experiment)},
@@ -265,18 +270,21 @@ PublishedVerdict published_verdict(const json& map) {
     verdict.answer = PublishedAnswer::most_likely;
   }
   const std::string meaning = meaning_of(map, family);
-  const std::string sure = fmt::format(
-      "probability {} among {} explanations, over all ranges and numbers of readings{}", percent(family.least()),
-      map["map"].size(), p.is_null() ? "" : fmt::format(", p = {:.2g}", p.get<double>()));
+  const std::string sure =
+      fmt::format("probability {} among {} explanations, over all ranges and numbers of readings{}",
+                  percent(family.least()), map["map"].size(),
+                  p.is_null() ? "" : fmt::format(", p = {:.2g}", p.get<double>()));
   switch (verdict.answer) {
     case PublishedAnswer::explained:
-      verdict.headline = fmt::format("The published fits agree with the declared wire if {}: {}.", meaning, sure);
+      verdict.headline =
+          fmt::format("The published fits agree with the declared wire if {}: {}.", meaning, sure);
       break;
     case PublishedAnswer::most_likely:
       verdict.headline = fmt::format("Most likely, {}: {}.", meaning, sure);
       break;
     case PublishedAnswer::none_of_these:
-      verdict.headline = fmt::format("No explanation agrees with the published fits; the nearest is: {}.", meaning);
+      verdict.headline =
+          fmt::format("No explanation agrees with the published fits; the nearest is: {}.", meaning);
       break;
     case PublishedAnswer::cannot_tell:
       verdict.headline =
@@ -285,8 +293,8 @@ PublishedVerdict published_verdict(const json& map) {
   }
   const std::string more = "the range of the test, its largest force or one raw reading would tell more";
   verdict.headline += family.members.size() > 1
-                          ? fmt::format(" They cannot tell which of these it is: {}; {} ({} fit).", members_of(family),
-                                        more, region_of(map))
+                          ? fmt::format(" They cannot tell which of these it is: {}; {} ({} fit).",
+                                        members_of(family), more, region_of(map))
                           : fmt::format(" They fit over {}; {}.", region_of(map), more);
   return verdict;
 }

@@ -26,23 +26,24 @@ nlohmann::json summary(const identification::Series& series, const identificatio
   }
   double largest = 0.0;
   for (const double force : prediction.force) largest = std::max(largest, std::abs(force));
-  return {
-      {"series", series.name},
-      {"points", prediction.force.size()},
-      {"largest_force_N", largest},
-      {"misfit", misfit},
-      {"natural_height_mm", in_mm(prediction.curve.curve.natural_height)},
-      {"events", events},
-      {"in_contact_at_end", !prediction.curve.curve.points.empty() && prediction.curve.curve.points.back().in_contact},
-      {"stopped", prediction.curve.curve.report.usable() ? nlohmann::json()
-                                                         : nlohmann::json(prediction.curve.curve.report.message)}};
+  return {{"series", series.name},
+          {"points", prediction.force.size()},
+          {"largest_force_N", largest},
+          {"misfit", misfit},
+          {"natural_height_mm", in_mm(prediction.curve.curve.natural_height)},
+          {"events", events},
+          {"in_contact_at_end",
+           !prediction.curve.curve.points.empty() && prediction.curve.curve.points.back().in_contact},
+          {"stopped", prediction.curve.curve.report.usable()
+                          ? nlohmann::json()
+                          : nlohmann::json(prediction.curve.curve.report.message)}};
 }
 
 }  // namespace
 
 bool PushResult::complete() const {
-  return std::ranges::all_of(predictions,
-                             [](const identification::Prediction& p) { return p.curve.curve.report.usable(); });
+  return std::ranges::all_of(
+      predictions, [](const identification::Prediction& p) { return p.curve.curve.report.usable(); });
 }
 
 PushResult push(const identification::Experiment& experiment, const Watch& watch) {
@@ -59,17 +60,19 @@ PushResult push(const identification::Experiment& experiment, const Watch& watch
   PushResult result;
   result.predictions = identification::predict_all(experiment.series, experiment.solver, {}, options);
   bool interrupted = false;
-  result.document = {{"schema", "snare-push/1"}, {"title", experiment.title}, {"series", nlohmann::json::array()}};
+  result.document = {
+      {"schema", "snare-push/1"}, {"title", experiment.title}, {"series", nlohmann::json::array()}};
   for (std::size_t k = 0; k < result.predictions.size(); ++k) {
     result.document["series"].push_back(summary(experiment.series[k], result.predictions[k]));
-    interrupted =
-        interrupted || result.predictions[k].curve.curve.report.termination == numerics::Termination::interrupted;
+    interrupted = interrupted ||
+                  result.predictions[k].curve.curve.report.termination == numerics::Termination::interrupted;
   }
   result.document["interrupted"] = interrupted;
   std::vector<std::string> warnings = push_warnings(experiment.series, result.predictions);
   std::vector<std::vector<double>> forces;
   for (const identification::Prediction& p : result.predictions) forces.push_back(p.force);
-  for (const identification::Finding& f : identification::sign_findings(experiment.series, forces, experiment.solver))
+  for (const identification::Finding& f :
+       identification::sign_findings(experiment.series, forces, experiment.solver))
     warnings.push_back(f.what);
   result.document["warnings"] = warnings;
   return result;

@@ -163,7 +163,9 @@ json head(const RecordSet& set, const RecordTrace& trace, const char* schema) {
           {"profiles", profiles_json(trace)},
           {"families", families_json(trace)},
           {"simulations",
-           {{"all", trace.simulations}, {"base_fit", trace.fit_simulations}, {"iterations", trace.fit_iterations}}}};
+           {{"all", trace.simulations},
+            {"base_fit", trace.fit_simulations},
+            {"iterations", trace.fit_iterations}}}};
 }
 
 json tests_json(const RecordTrace& trace) {
@@ -188,8 +190,10 @@ json record_trace_json(const RecordSet& set, const RecordTrace& trace) {
       result["candidates"] = candidates;
       result["classes"] = round.classes;
     }
-    result["rounds"].push_back(
-        {{"candidates", candidates}, {"classes", round.classes}, {"added", round.added}, {"reason", round.reason}});
+    result["rounds"].push_back({{"candidates", candidates},
+                                {"classes", round.classes},
+                                {"added", round.added},
+                                {"reason", round.reason}});
   }
   json names = json::array();
   for (const std::size_t e : trace.selected_effects) names.push_back(trace.effects[e].name);
@@ -203,7 +207,8 @@ json record_trace_json(const RecordSet& set, const RecordTrace& trace) {
   result["final"] = stage_json(trace, trace.final);
   result["heldout"] = {
       {with_unit("rmse_base", trace), trace.base.heldout.empty() ? json() : finite(trace.base.heldout_rmse)},
-      {with_unit("rmse_final", trace), trace.final.heldout.empty() ? json() : finite(trace.final.heldout_rmse)},
+      {with_unit("rmse_final", trace),
+       trace.final.heldout.empty() ? json() : finite(trace.final.heldout_rmse)},
       {with_unit("rmse_declared", trace),
        trace.declared.heldout.empty() ? json() : finite(trace.declared.heldout_rmse)},
       {"base", errors_json(trace.base.heldout)},
@@ -229,7 +234,8 @@ json record_fit_json(const RecordSet& set, const RecordTrace& trace) {
   json result = head(set, trace, "snare-fit/1");
   result["fit"] = stage_json(trace, trace.base);
   result["residual"] = {{"acceptable", !trace.significant}, {"tests", tests_json(trace)}};
-  result["heldout"] = {{"declared", errors_json(trace.declared.heldout)}, {"fit", errors_json(trace.base.heldout)}};
+  result["heldout"] = {{"declared", errors_json(trace.declared.heldout)},
+                       {"fit", errors_json(trace.base.heldout)}};
   return result;
 }
 
@@ -246,9 +252,9 @@ void give_record_curves(TableSink& sink, const RecordSet& set, const RecordTrace
         return stage.predictions[r].channels[c][i];
       };
       for (Eigen::Index i = 0; i < record.times.size(); ++i)
-        sink.row({std::string_view(record.name), std::string_view(record.channels[c].sensor), std::string_view(unit),
-                  record.times[i], record.channels[c].values[i], cell(trace.declared, i), cell(trace.base, i),
-                  cell(trace.final, i)});
+        sink.row({std::string_view(record.name), std::string_view(record.channels[c].sensor),
+                  std::string_view(unit), record.times[i], record.channels[c].values[i],
+                  cell(trace.declared, i), cell(trace.base, i), cell(trace.final, i)});
     }
   }
 }

@@ -42,7 +42,8 @@ StaticComparison from_experiment(const std::filesystem::path& file, const Overri
     one.wire.law_positions = {series.test.contact_position};
     if (series.law) {
       const identification::QuadraticLaw law = *series.law;
-      one.given.push_back({"published_quadratic", 3, {0.0, law.to}, [law](double d) { return law.force(d); }});
+      one.given.push_back(
+          {"published_quadratic", 3, {0.0, law.to}, [law](double d) { return law.force(d); }});
     }
     result.cases.push_back(std::move(one));
   }
@@ -59,11 +60,13 @@ StaticComparison from_wire(const std::filesystem::path& file, const Overrides& o
   for (std::size_t c = 0; c < wire.cases.size(); ++c) {
     for (const double position : wire.cases[c].law_positions) {
       StaticCase one;
-      one.name = fmt::format("{}s{:.6g}", wire.cases.size() > 1 ? fmt::format("case{}_", c + 1) : "", 1e3 * position);
+      one.name = fmt::format("{}s{:.6g}", wire.cases.size() > 1 ? fmt::format("case{}_", c + 1) : "",
+                             1e3 * position);
       one.wire = wire.cases[c];
       one.wire.law_positions = {position};
       for (int i = 0; i < points; ++i) one.travel.push_back(one.wire.travel.high * i / (points - 1));
-      if (one.wire.dissipates()) one.travel.insert(one.travel.end(), one.travel.rbegin() + 1, one.travel.rend());
+      if (one.wire.dissipates())
+        one.travel.insert(one.travel.end(), one.travel.rbegin() + 1, one.travel.rend());
       result.cases.push_back(std::move(one));
     }
   }
@@ -111,15 +114,17 @@ StaticComparison read_static_comparison(const std::filesystem::path& file, const
     if (schema != nullptr && schema->text == kind.schema) return kind.read(file, overrides);
     allowed += fmt::format("{}\"{}\"", allowed.empty() ? "" : " or ", kind.schema);
   }
-  throw base::InputError(base::InputProblem{file.string(), schema != nullptr ? schema->line : 0, "schema",
-                                            schema != nullptr ? schema->written : "",
-                                            (schema != nullptr ? "must be " : "missing, must be ") + allowed});
+  throw base::InputError(base::InputProblem{
+      file.string(), schema != nullptr ? schema->line : 0, "schema", schema != nullptr ? schema->written : "",
+      (schema != nullptr ? "must be " : "missing, must be ") + allowed});
 }
 
-nlohmann::json comparison_json(const StaticComparison& comparison, const std::vector<CaseComparison>& results) {
+nlohmann::json comparison_json(const StaticComparison& comparison,
+                               const std::vector<CaseComparison>& results) {
   const bool partial = results.size() < comparison.cases.size();
-  nlohmann::json document{{"schema", "snare-comparison/1"}, {"version", version()}, {"interrupted", partial},
-                          {"title", comparison.title},      {"kind", "static"},     {"cases", nlohmann::json::array()}};
+  nlohmann::json document{
+      {"schema", "snare-comparison/1"}, {"version", version()}, {"interrupted", partial},
+      {"title", comparison.title},      {"kind", "static"},     {"cases", nlohmann::json::array()}};
   for (const CaseComparison& one : results) document["cases"].push_back(case_json(one));
   return document;
 }

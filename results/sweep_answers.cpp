@@ -43,7 +43,8 @@ CaseRecord inferred_record(const SweepStudy& study, const study::Seen& seen) {
 /// The cases that were run or are inferred, in order.
 template <class Use>
 void for_each_case(const SweepStudy& study, const SweepCases& cases, const Use& use) {
-  const std::uint64_t end = cases.refined != nullptr ? cases.count : std::min(cases.count, cases.journal.end());
+  const std::uint64_t end =
+      cases.refined != nullptr ? cases.count : std::min(cases.count, cases.journal.end());
   for (std::uint64_t index = 0; index < end; ++index) {
     if (const std::optional<std::string> line = cases.journal.result(index)) {
       if (const std::optional<CaseRecord> record = study::record_of(*line)) use(index, *record);
@@ -79,8 +80,8 @@ std::vector<double> edges_of(std::vector<double> places, bool levels) {
     return edges;
   }
   for (std::size_t k = 0; k <= map_bins; ++k)
-    edges.push_back(places.front() +
-                    static_cast<double>(k) / static_cast<double>(map_bins) * (places.back() - places.front()));
+    edges.push_back(places.front() + static_cast<double>(k) / static_cast<double>(map_bins) *
+                                         (places.back() - places.front()));
   return edges;
 }
 
@@ -96,12 +97,14 @@ class Worst {
   void add(std::uint64_t index, double value, const std::vector<double>& values) {
     if (found_.size() == worst_of_each && sign_ * value <= sign_ * found_.back().value) return;
     found_.push_back({value, index, values});
-    std::ranges::stable_sort(found_, [this](const One& a, const One& b) { return sign_ * a.value > sign_ * b.value; });
+    std::ranges::stable_sort(
+        found_, [this](const One& a, const One& b) { return sign_ * a.value > sign_ * b.value; });
     if (found_.size() > worst_of_each) found_.pop_back();
   }
   void append_to(std::vector<CaseAnswer>& list, const SweepStudy& study) const {
     for (const One& one : found_)
-      list.push_back({one.index + 1, fmt::format("{}: {:.6g}", words_, one.value), study.command_of(one.values)});
+      list.push_back(
+          {one.index + 1, fmt::format("{}: {:.6g}", words_, one.value), study.command_of(one.values)});
   }
 
  private:
@@ -124,7 +127,8 @@ std::vector<Quantity> quantities_of(const study::SweepFile& sweep, const SweepAn
   std::vector<Quantity> all;
   for (const study::Limit& limit : sweep.limits) all.push_back({limit.name, limit.field, &limit, true});
   for (std::size_t f = 0; f < answers.fields.size(); ++f)
-    if (answers.fields[f].count > 0) all.push_back({answers.fields[f].name, f, nullptr, answers.fields[f].yes_or_no});
+    if (answers.fields[f].count > 0)
+      all.push_back({answers.fields[f].name, f, nullptr, answers.fields[f].yes_or_no});
   if (all.size() > plotted_fields) all.resize(plotted_fields);
   return all;
 }
@@ -235,8 +239,9 @@ SweepAnswers sweep_answers(const SweepStudy& study, const SweepCases& cases) {
   std::vector<Worst> worst;
   std::vector<std::size_t> worst_field;
   for (const study::Limit& limit : sweep.limits) {
-    worst.emplace_back(fmt::format("{} {}", limit.above ? "largest" : "least", sweep.collect[limit.field].name),
-                       limit.above ? 1.0 : -1.0);
+    worst.emplace_back(
+        fmt::format("{} {}", limit.above ? "largest" : "least", sweep.collect[limit.field].name),
+        limit.above ? 1.0 : -1.0);
     worst_field.push_back(limit.field);
   }
   for (std::size_t f = 0; sweep.limits.empty() && f < sweep.collect.size(); ++f) {
@@ -302,13 +307,13 @@ SweepAnswers sweep_answers(const SweepStudy& study, const SweepCases& cases) {
     finish(field);
     if (field.count > 1) field.deviation = std::sqrt(squares[f] / static_cast<double>(field.count - 1));
     if (sweep.design.settings().kind != DesignKind::sensitivity || field.count == 0) continue;
-    field.indices = study::sobol_indices(variables.size(), sweep.design.settings().cases,
-                                         [&](std::uint64_t index) -> std::optional<double> {
-                                           const std::optional<std::string> line = cases.journal.result(index);
-                                           if (!line) return std::nullopt;
-                                           const auto record = study::record_of(*line);
-                                           return record && record->done() ? record->number(f) : std::nullopt;
-                                         });
+    field.indices = study::sobol_indices(
+        variables.size(), sweep.design.settings().cases, [&](std::uint64_t index) -> std::optional<double> {
+          const std::optional<std::string> line = cases.journal.result(index);
+          if (!line) return std::nullopt;
+          const auto record = study::record_of(*line);
+          return record && record->done() ? record->number(f) : std::nullopt;
+        });
   }
   for (const Worst& one : worst) one.append_to(answers.worst, study);
   if (answers.finished > 0) draw(study, cases, places, answers);
@@ -330,7 +335,8 @@ void give_cases(TableSink& sink, const SweepStudy& study, const SweepCases& case
   std::vector<base::CsvCell> row;
   std::vector<std::string> texts(columns.size());
   for_each_case(study, cases, [&](std::uint64_t index, const CaseRecord& record) {
-    row.assign({static_cast<long long>(index + 1), std::string_view(record.status), std::string_view(record.reason)});
+    row.assign({static_cast<long long>(index + 1), std::string_view(record.status),
+                std::string_view(record.reason)});
     const std::vector<double> values = values_of_case(study, index, record);
     const auto add = [&](const json& value) {
       std::string& text = texts[row.size()];
@@ -354,7 +360,8 @@ void give_cases(TableSink& sink, const SweepStudy& study, const SweepCases& case
       else
         add(json::parse(study::literal(v, values[j]), nullptr, false));
     }
-    for (std::size_t f = 0; f < sweep.collect.size(); ++f) add(f < record.fields.size() ? record.fields[f] : json());
+    for (std::size_t f = 0; f < sweep.collect.size(); ++f)
+      add(f < record.fields.size() ? record.fields[f] : json());
     sink.row(row);
   });
 }
@@ -397,8 +404,12 @@ json sweep_summary(const SweepStudy& study, const SweepAnswers& answers) {
     if (field.yes_or_no) {
       one["true"] = probability(field.hits, field.count);
     } else {
-      one.update({{"mean", field.mean}, {"deviation", field.deviation}, {"least", field.least}, {"most", field.most}});
-      for (const auto& [name, p] : {std::pair{"q05", 0.05}, {"q25", 0.25}, {"q50", 0.5}, {"q75", 0.75}, {"q95", 0.95}})
+      one.update({{"mean", field.mean},
+                  {"deviation", field.deviation},
+                  {"least", field.least},
+                  {"most", field.most}});
+      for (const auto& [name, p] :
+           {std::pair{"q05", 0.05}, {"q25", 0.25}, {"q50", 0.5}, {"q75", 0.75}, {"q95", 0.95}})
         one[name] = field.quantile(p);
     }
     if (!field.indices) continue;
@@ -410,13 +421,15 @@ json sweep_summary(const SweepStudy& study, const SweepAnswers& answers) {
              {"variables", json::object()}};
     for (std::size_t j = 0; j < field.indices->of.size(); ++j) {
       const study::SobolIndex& s = field.indices->of[j];
-      sobol["variables"][variables[j].name] = {{"first", s.first},
-                                               {"first_interval95", {s.first - s.first_half, s.first + s.first_half}},
-                                               {"total", s.total},
-                                               {"total_interval95", {s.total - s.total_half, s.total + s.total_half}}};
+      sobol["variables"][variables[j].name] = {
+          {"first", s.first},
+          {"first_interval95", {s.first - s.first_half, s.first + s.first_half}},
+          {"total", s.total},
+          {"total_interval95", {s.total - s.total_half, s.total + s.total_half}}};
     }
   }
-  for (const LimitAnswer& limit : answers.limits) summary["limits"][limit.name] = probability(limit.hits, limit.count);
+  for (const LimitAnswer& limit : answers.limits)
+    summary["limits"][limit.name] = probability(limit.hits, limit.count);
   for (const CaseAnswer& one : answers.worst)
     summary["worst"].push_back({{"case", one.number}, {"why", one.why}, {"command", one.command}});
   if (answers.subset) {

@@ -64,8 +64,9 @@ struct ScatterAnswer {
 /// What a subset simulation says of a rare event.
 struct SubsetAnswer {
   double probability = 0.0, variation = 0.0;  ///< of the event; coefficient of variation of that [-]
-  study::ProbabilityInterval interval;  ///< 95 % interval; not reached: from zero to a bound that holds more often
-  bool reached = false;                 ///< some case had the event
+  study::ProbabilityInterval
+      interval;          ///< 95 % interval; not reached: from zero to a bound that holds more often
+  bool reached = false;  ///< some case had the event
   std::vector<study::SubsetSimulation::Level> levels;
 };
 

@@ -110,8 +110,10 @@ History SweepHistories::read(std::uint64_t index) const {
     const std::string all = base::read_own(file, std::numeric_limits<std::size_t>::max());
     const std::string head = head_of(study_, index);
     std::uint64_t sum = 0;
-    if (!all.starts_with(head) || all.size() < head.size() + sizeof sum) throw std::runtime_error("it is another's");
-    const std::string_view columns = std::string_view(all).substr(head.size(), all.size() - head.size() - sizeof sum);
+    if (!all.starts_with(head) || all.size() < head.size() + sizeof sum)
+      throw std::runtime_error("it is another's");
+    const std::string_view columns =
+        std::string_view(all).substr(head.size(), all.size() - head.size() - sizeof sum);
     base::ByteReader(std::string_view(all).substr(all.size() - sizeof sum))(sum);
     if (sum != base::fingerprint(columns)) throw std::runtime_error("its checksum is another");
     base::ByteReader reader(columns);
@@ -119,10 +121,10 @@ History SweepHistories::read(std::uint64_t index) const {
   } catch (const std::runtime_error& error) {
     std::error_code ignored;
     fs::remove(file, ignored);
-    throw std::runtime_error(
-        fmt::format("{}: the history of case {} is missing or damaged; the same command runs this case again, in a "
-                    "folder that all ranks see ({})",
-                    file.string(), index + 1, error.what()));
+    throw std::runtime_error(fmt::format(
+        "{}: the history of case {} is missing or damaged; the same command runs this case again, in a "
+        "folder that all ranks see ({})",
+        file.string(), index + 1, error.what()));
   }
   return history;
 }
@@ -174,7 +176,8 @@ void SweepHistories::write(const fs::path& file, const study::Journal& journal, 
     hdf5.group(group, attributes);
     for (const HistoryColumn& column : history.columns) {
       Hdf5Attributes unit;
-      if (const std::string words = unit_of_column(column.name); !words.empty()) unit.emplace_back("unit", words);
+      if (const std::string words = unit_of_column(column.name); !words.empty())
+        unit.emplace_back("unit", words);
       if (column.texts.empty())
         hdf5.dataset(group + "/" + column.name, column.numbers, unit);
       else

@@ -2,6 +2,7 @@
 
 #include "base/errors.hpp"
 #include "study/case_loop.hpp"
+#include "study/rank_journal.hpp"
 
 #include <fmt/format.h>
 
@@ -42,7 +43,8 @@ class SweepRun {
     begin();
     while (!grid.finished() && !watch_.stopped()) {
       const std::vector<std::uint64_t>& asked = grid.next();
-      run_numbered(grid.told() + asked.size(), [&](std::uint64_t k) { return std::ranges::binary_search(asked, k); });
+      run_numbered(grid.told() + asked.size(),
+                   [&](std::uint64_t k) { return std::ranges::binary_search(asked, k); });
       if (watch_.stopped()) return false;
       std::vector<study::Seen> seen;
       for (const std::uint64_t index : asked) {
@@ -64,8 +66,9 @@ class SweepRun {
       expect(base + asked.size());
       const auto values = [&](std::uint64_t k) { return study_.sweep().design.values_of_scores(asked[k]); };
       study::Dispatcher dispatcher(
-          study::Scheduler({.count = asked.size(), .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
-                           [&](std::uint64_t k) { return finished(base + k); }),
+          study::Scheduler(
+              {.count = asked.size(), .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
+              [&](std::uint64_t k) { return finished(base + k); }),
           [&](std::uint64_t k, const std::string& line) { keep(base + k, line); }, stop_);
       run(dispatcher, values, [base](std::uint64_t k) { return base + k; });
       if (watch_.stopped()) return false;
@@ -89,7 +92,9 @@ class SweepRun {
   [[nodiscard]] double chunk_s() const { return workers_.leader != nullptr ? 0.5 : 0.0; }
 
   /// Nothing of the case is to be done any more.
-  [[nodiscard]] bool finished(std::uint64_t index) const { return journal_.has(index) && !again_.contains(index); }
+  [[nodiscard]] bool finished(std::uint64_t index) const {
+    return journal_.has(index) && !again_.contains(index);
+  }
 
   /// What the journal says of a case.
   [[nodiscard]] std::optional<CaseRecord> told(std::uint64_t index) const {
@@ -98,6 +103,7 @@ class SweepRun {
   }
 
   void begin() {
+    study::take_rank_journals(journal_, study_.identity(), study_.count());
     if (workers_.histories != nullptr) again_ = workers_.histories->missing(journal_);
     before_ = journal_.finished() - again_.size();
     began_ = Clock::now();
@@ -112,8 +118,9 @@ class SweepRun {
   void run_numbered(std::uint64_t cases, const Wanted& wanted) {
     expect(cases);
     study::Dispatcher dispatcher(
-        study::Scheduler({.count = study_.count(), .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
-                         [&](std::uint64_t k) { return !wanted(k) || finished(k); }),
+        study::Scheduler(
+            {.count = study_.count(), .workers = std::max(1, workers_.all), .chunk_s = chunk_s()},
+            [&](std::uint64_t k) { return !wanted(k) || finished(k); }),
         [this](std::uint64_t index, const std::string& line) { keep(index, line); }, stop_);
     run(
         dispatcher, [](std::uint64_t) { return std::vector<double>(); }, [](std::uint64_t k) { return k; });
@@ -134,8 +141,10 @@ class SweepRun {
             return study::line_of(record);
           },
           number(0));
+      study::take_rank_journals(journal_, study_.identity(), study_.count());
     } else {
-      study::run_cases(dispatcher, workers_.threads, [&](std::uint64_t k) { return run_one(number(k), values(k)); });
+      study::run_cases(dispatcher, workers_.threads,
+                       [&](std::uint64_t k) { return run_one(number(k), values(k)); });
       dispatcher.rethrow();
     }
   }
@@ -156,8 +165,8 @@ class SweepRun {
     const double elapsed = std::chrono::duration<double>(Clock::now() - began_).count();
     if (elapsed - shown_ < 0.1 && done < total_) return;
     shown_ = elapsed;
-    const double share =
-        static_cast<double>(done - before_) / static_cast<double>(std::max<std::uint64_t>(1, total_ - before_));
+    const double share = static_cast<double>(done - before_) /
+                         static_cast<double>(std::max<std::uint64_t>(1, total_ - before_));
     watch_.say(fmt::format("{} of {} cases{}, {} to go", done, total_,
                            without_ > 0 ? fmt::format(" ({} without a result)", without_) : "",
                            time_words(elapsed * (1.0 - share) / share)));
@@ -184,7 +193,8 @@ std::string case_line(const SweepStudy& study, const SweepHistories* histories, 
   return study::line_of(study.run(values.empty() ? study.sweep().design.values(index) : values, stop, keep));
 }
 
-SweepEnd run_sweep_cases(const SweepStudy& study, Journal& journal, const SweepWorkers& workers, const Watch& watch) {
+SweepEnd run_sweep_cases(const SweepStudy& study, Journal& journal, const SweepWorkers& workers,
+                         const Watch& watch) {
   SweepRun run(study, journal, workers, watch);
   SweepEnd end;
   if (study.sweep().refine) {
@@ -204,8 +214,8 @@ SweepEnd run_sweep_cases(const SweepStudy& study, Journal& journal, const SweepW
   end.partial = !run.subset(simulation);
   end.cases = simulation.told() + simulation.next().size();
   if (!end.partial)
-    end.subset = {simulation.probability(), simulation.variation(), simulation.interval(), simulation.reached(),
-                  simulation.levels()};
+    end.subset = {simulation.probability(), simulation.variation(), simulation.interval(),
+                  simulation.reached(), simulation.levels()};
   return end;
 }
 

@@ -26,8 +26,9 @@ struct SweepWorkers {
 
 /// Runs one case by its number in the journal and keeps its history; the line of its record. values: of a subset simulation, in the units
 /// of their keys, else none. Never throws.
-[[nodiscard]] std::string case_line(const SweepStudy& study, const SweepHistories* histories, std::uint64_t index,
-                                    const std::vector<double>& values, const std::function<bool()>& stop);
+[[nodiscard]] std::string case_line(const SweepStudy& study, const SweepHistories* histories,
+                                    std::uint64_t index, const std::vector<double>& values,
+                                    const std::function<bool()>& stop);
 
 /// How far a sweep has come.
 struct SweepEnd {
@@ -44,10 +45,11 @@ struct SweepEnd {
 
 /// Runs the cases that the journal does not have yet, and those whose history is missing, and appends them. Throws base::InputError when a field that is to be collected
 /// is not in the first result, std::runtime_error when a history cannot be kept, and what the journal throws; then what was appended is there.
-[[nodiscard]] SweepEnd run_sweep_cases(const SweepStudy& study, study::Journal& journal, const SweepWorkers& workers,
-                                       const Watch& watch);
+[[nodiscard]] SweepEnd run_sweep_cases(const SweepStudy& study, study::Journal& journal,
+                                       const SweepWorkers& workers, const Watch& watch);
 
 /// What the cases in the journal say together, a sweep that is not at its end included.
-[[nodiscard]] SweepAnswers sweep_answers(const SweepStudy& study, const study::Journal& journal, const SweepEnd& end);
+[[nodiscard]] SweepAnswers sweep_answers(const SweepStudy& study, const study::Journal& journal,
+                                         const SweepEnd& end);
 
 }  // namespace snare::results

@@ -23,10 +23,11 @@ namespace {
 using nlohmann::json;
 
 /// Whether the verb has a history, with the columns that are asked for.
-void check_histories(const study::SweepFile& sweep, const CaseRunner& runner, const std::vector<std::string>& names) {
+void check_histories(const study::SweepFile& sweep, const CaseRunner& runner,
+                     const std::vector<std::string>& names) {
   if (!runner.has_history()) {
-    throw base::InputError(
-        {sweep.file.string(), 0, "histories", "", fmt::format("must be left out: {} has no history", runner.verb())});
+    throw base::InputError({sweep.file.string(), 0, "histories", "",
+                            fmt::format("must be left out: {} has no history", runner.verb())});
   }
   std::vector<base::InputProblem> problems;
   for (std::size_t k = 0; k < sweep.histories->columns.size(); ++k) {
@@ -70,8 +71,9 @@ SweepStudy::SweepStudy(const std::filesystem::path& file, const std::vector<base
     : sweep_(study::read_sweep_file(file, overrides)), runner_(sweep_.case_file, sweep_.verb, sweep_.file) {
   const std::vector<std::string> columns = check_some(sweep_, runner_);
   if (sweep_.histories) check_histories(sweep_, runner_, columns);
-  identity_ = fmt::format("{:016x} {:016x} designs {} snare {}", base::fingerprint(sweep_.canonical),
-                          base::fingerprint(contents_of_files(sweep_.case_file)), study::design_version, version());
+  identity_ =
+      fmt::format("{:016x} {:016x} designs {} snare {}", base::fingerprint(sweep_.canonical),
+                  base::fingerprint(contents_of_files(sweep_.case_file)), study::design_version, version());
 }
 
 std::uint64_t SweepStudy::count() const noexcept {
@@ -82,25 +84,28 @@ study::CaseRecord SweepStudy::run(const std::vector<double>& values, const std::
                                   const std::function<void(History&)>& keep) const {
   study::CaseRecord record;
   const auto begin = std::chrono::steady_clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  const auto elapsed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
   std::atomic<bool> late{false};
   std::optional<HistoryTable> table;
   if (sweep_.histories && keep) table.emplace(sweep_.histories->columns, sweep_.histories->every);
   try {
     json result;
-    const CaseEnd end = runner_.run(
-        overrides_of(values),
-        [&] {
-          if (elapsed() > sweep_.time_limit) late = true;
-          return late.load() || stop();
-        },
-        result, table ? &*table : nullptr);
+    const CaseEnd end = runner_.run(overrides_of(values),
+                                    {{},
+                                     [&] {
+                                       if (elapsed() > sweep_.time_limit) late = true;
+                                       return late.load() || stop();
+                                     }},
+                                    result, table ? &*table : nullptr);
     using Status = CaseEnd::Status;
     record.reason = end.reason;
     switch (end.status) {
       case Status::done:
         record.status = "done";
-        for (const study::Collected& field : sweep_.collect) record.fields.push_back(study::collected(field, result));
+        for (const study::Collected& field : sweep_.collect)
+          record.fields.push_back(study::collected(field, result));
         break;
       case Status::failed:
         record.status = "failed";
@@ -150,8 +155,8 @@ std::optional<double> SweepStudy::margin_of(const study::CaseRecord& record) con
 
 study::SubsetSimulation::Settings SweepStudy::subset_settings() const {
   const study::DesignSettings& design = sweep_.design.settings();
-  return {sweep_.design.variables().size(), design.cases, sweep_.subset.level_probability, sweep_.subset.most_levels,
-          design.seed};
+  return {sweep_.design.variables().size(), design.cases, sweep_.subset.level_probability,
+          sweep_.subset.most_levels, design.seed};
 }
 
 }  // namespace snare::results

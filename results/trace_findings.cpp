@@ -46,7 +46,8 @@ std::string nearest_channel(const identification::ChannelFunction& f) {
         to_string(f.channel), f.argument, f.effect, 100.0 * f.carried_over, f.shape);
   }
   return fmt::format(
-      " No single function of one channel carries over from series to series; the {} comes nearest ({:.0f} %).",
+      " No single function of one channel carries over from series to series; the {} comes nearest ({:.0f} "
+      "%).",
       to_string(f.channel), 100.0 * std::max(0.0, f.carried_over));
 }
 
@@ -67,14 +68,16 @@ std::string take_more(const Trace& t) {
   const auto fitted = t.base.numbers.size();
   if (t.from_laws) {
     return fmt::format(
-        " {} published numbers cannot support an effect in addition to {} fitted ones: too few degrees of freedom "
+        " {} published numbers cannot support an effect in addition to {} fitted ones: too few degrees of "
+        "freedom "
         "would "
         "be left.",
         t.rows, fitted);
   }
   const double enough = static_cast<double>(fitted + 1) + identification::fewest_dof(fitted + 1);
   return fmt::format(
-      " These {} readings cannot tell more: one number beside the {} fitted ones would leave too few. Take at least "
+      " These {} readings cannot tell more: one number beside the {} fitted ones would leave too few. Take "
+      "at least "
       "{:g}, better twenty a series, on loading and back, at two positions.",
       t.rows, fitted, enough);
 }
@@ -83,7 +86,8 @@ std::string nothing_missing(const Trace& t) {
   std::string text;
   if (t.from_laws) {
     text = fmt::format(
-        "Nothing missing: the base model, {} numbers of it fitted, agrees with the {} published ones ({}); no effect "
+        "Nothing missing: the base model, {} numbers of it fitted, agrees with the {} published ones ({}); "
+        "no effect "
         "is "
         "missing.",
         t.base.numbers.size(), t.rows, bootstrap_p(t.base_tests.lack_of_fit));
@@ -99,8 +103,10 @@ std::string nothing_missing(const Trace& t) {
         t.base.rmse, t.remaining.upper, share_of_peak(t, t.remaining.upper), t.tolerance);
   } else {
     text = fmt::format(
-        "Nothing missing worth a name: the base model leaves {:.3g} N rms, some {:.2g} N of it not noise, less than "
-        "the tolerance of {:.3g} N; but it may be {:.2g} N ({}), and no effect of the catalogue lowers that by more "
+        "Nothing missing worth a name: the base model leaves {:.3g} N rms, some {:.2g} N of it not noise, "
+        "less than "
+        "the tolerance of {:.3g} N; but it may be {:.2g} N ({}), and no effect of the catalogue lowers that "
+        "by more "
         "than the tolerance.",
         t.base.rmse, t.remaining.rmse, t.tolerance, t.remaining.upper, share_of_peak(t, t.remaining.upper));
   }
@@ -118,7 +124,8 @@ std::string effects_of(const Trace& t) {
 std::string reservation(const Trace& t) {
   if (t.decided || t.serial || !t.alternatives.empty()) return "";
   if (t.one_condition) {
-    return " All readings are of one position and one slack: a cause outside the catalogue that acts on the travel "
+    return " All readings are of one position and one slack: a cause outside the catalogue that acts on the "
+           "travel "
            "would "
            "look the same. Push at another position to settle it.";
   }
@@ -133,9 +140,11 @@ std::string partly_explained(const Trace& t) {
   text += fmt::format(
       " Left is {:.2g} N rms that is not noise, at most {:.2g} N ({}), {:.2g} % of what the base model "
       "leaves",
-      t.remaining.rmse, t.remaining.upper, share_of_peak(t, t.remaining.upper), 100.0 * t.remaining.share_of_excess);
+      t.remaining.rmse, t.remaining.upper, share_of_peak(t, t.remaining.upper),
+      100.0 * t.remaining.share_of_excess);
   if (!t.remaining.channel.empty()) text += fmt::format("; it comes nearest to the {}", t.remaining.channel);
-  return text + ". The forces may be relied on to that; the intervals of the numbers do not hold what is left." +
+  return text +
+         ". The forces may be relied on to that; the intervals of the numbers do not hold what is left." +
          reservation(t);
 }
 
@@ -154,15 +163,19 @@ std::string cannot_tell(const Trace& t) {
   const double hidden = t.remaining.upper / (identification::most_hidden * t.peak_force);
   if (hidden > 1.0) {
     return fmt::format(
-        "Cannot tell: the base model leaves {:.3g} N rms, which noise explains, but up to {:.2g} N ({}) could hide in "
-        "it, and no effect of that size can be excluded. It takes {:.2g} times less noise, or {:.2g} times as many "
+        "Cannot tell: the base model leaves {:.3g} N rms, which noise explains, but up to {:.2g} N ({}) "
+        "could hide in "
+        "it, and no effect of that size can be excluded. It takes {:.2g} times less noise, or {:.2g} times "
+        "as many "
         "readings.",
         t.base.rmse, t.remaining.upper, share_of_peak(t, t.remaining.upper), hidden, hidden * hidden);
   }
   return fmt::format(
-      "Cannot tell: the base model describes the readings (rmse {:.3g} N), but they do not determine its numbers, so "
+      "Cannot tell: the base model describes the readings (rmse {:.3g} N), but they do not determine its "
+      "numbers, so "
       "that an "
-      "effect that acts like one of these would not be seen. Hold one of the numbers that go together at a value that "
+      "effect that acts like one of these would not be seen. Hold one of the numbers that go together at a "
+      "value that "
       "was "
       "measured otherwise.",
       t.base.rmse);
@@ -171,7 +184,8 @@ std::string cannot_tell(const Trace& t) {
 /// How much autocorrelated noise widens the intervals.
 std::string serial_words(const identification::SerialNoise& s, std::size_t readings) {
   return fmt::format(
-      " The residual is autocorrelated over {:.2g} readings ({:.2g} % of its variance): these {} readings are worth "
+      " The residual is autocorrelated over {:.2g} readings ({:.2g} % of its variance): these {} readings "
+      "are worth "
       "{:.2g} "
       "independent ones, and the intervals take that into account.",
       s.length, 100.0 * s.smooth, readings, s.effective);
@@ -187,26 +201,30 @@ std::string not_explained(const Trace& t) {
   }
   if (t.rival_explanation) {
     text = fmt::format(
-        "Not explained: {} would bring the error of {:.3g} N down to the noise, but a single cause that the catalogue "
+        "Not explained: {} would bring the error of {:.3g} N down to the noise, but a single cause that the "
+        "catalogue "
         "does not have does so more simply.",
         fmt::join(t.partial, " and "), t.base.rmse);
   } else if (std::ranges::any_of(t.findings, impossible)) {
-    text =
-        fmt::format("Not explained: the fit leaves {:.3g} N rms, but with numbers that no such wire has.", t.base.rmse);
+    text = fmt::format("Not explained: the fit leaves {:.3g} N rms, but with numbers that no such wire has.",
+                       t.base.rmse);
   } else if (t.from_laws) {
     text = fmt::format(
-        "Not explained: with {} numbers fitted, the base model is rejected: lost readings of it would rarely give {} "
+        "Not explained: with {} numbers fitted, the base model is rejected: lost readings of it would rarely "
+        "give {} "
         "published numbers as unlikely as these ({}).",
         t.base.numbers.size(), t.rows, bootstrap_p(t.base_tests.lack_of_fit));
   } else if (t.few_readings) {
     text = fmt::format("Not explained: the base model leaves {:.3g} N rms.", t.base.rmse);
   } else {
     text = fmt::format(
-        "Not explained: the catalogue has no effect that brings the error of {:.3g} N down to the noise.", t.base.rmse);
+        "Not explained: the catalogue has no effect that brings the error of {:.3g} N down to the noise.",
+        t.base.rmse);
   }
   if (t.few_readings) text += take_more(t);
   if (t.functions.empty()) return text;
-  if (t.one_condition) return text + " All readings are of one position and one slack: its channel cannot be told.";
+  if (t.one_condition)
+    return text + " All readings are of one position and one slack: its channel cannot be told.";
   return text + nearest_channel(t.functions.front());
 }
 
@@ -215,7 +233,8 @@ std::string zero_words(const identification::ZeroCheck& z) {
   return fmt::format(
       " Note: the readings ask for a zero of the travel at {:.3g} mm ({:.3g} to "
       "{:.3g}); "
-      "with it {} would be {:.4g} {} in place of {:.4g}. Find the touch, or free reading.displacement_offset_mm.",
+      "with it {} would be {:.4g} {} in place of {:.4g}. Find the touch, or free "
+      "reading.displacement_offset_mm.",
       z.offset, z.lower, z.upper, z.key, z.with, z.unit, z.without);
 }
 

@@ -28,7 +28,8 @@ json correlation_json(const std::vector<FittedNumber>& numbers) {
   json result = json::object();
   for (const FittedNumber& n : numbers)
     for (std::size_t k = 0; k < n.correlation.size() && k < numbers.size(); ++k)
-      if (numbers[k].key != n.key && numbers[k].standard_error) result[n.key][numbers[k].key] = n.correlation[k];
+      if (numbers[k].key != n.key && numbers[k].standard_error)
+        result[n.key][numbers[k].key] = n.correlation[k];
   return result;
 }
 
@@ -83,25 +84,26 @@ json candidate_json(const Candidate& c) {
     intervals[n.key] = {finite(n.lower), finite(n.upper)};
   }
   const identification::Effect& effect = *c.score.effect;
-  return {{"effect", effect.name},
-          {"channel", to_string(effect.channel)},
-          {"meaning", effect.meaning},
-          {"observable", c.score.unobservable.empty()},
-          {"why_unobservable", c.score.unobservable.empty() ? json() : json(c.score.unobservable)},
-          {"score_z", finite(c.score.z)},
-          {"score_p", finite(c.score.p)},
-          {"score_p_holm", finite(c.score.adjusted_p)},
-          {"refitted", c.refitted},
-          {"rmse_N", c.refitted ? finite(c.rmse) : json()},
-          {"delta_bic", c.refitted ? finite(c.delta_bic) : json()},
-          {"value", values},
-          {"interval95", intervals},
-          {"plausible", c.plausible},
-          {"why_implausible", c.why_implausible.empty() ? json() : json(c.why_implausible)},
-          {"why_not_named", c.why_too_small.empty() ? json() : json(c.why_too_small)},
-          {"heldout_improves", c.heldout_improves ? json(*c.heldout_improves) : json()},
-          {"detectable", {{"key", effect.numbers.front().parameter.key}, {"size", finite(c.score.detectable)}}},
-          {"class", c.class_index}};
+  return {
+      {"effect", effect.name},
+      {"channel", to_string(effect.channel)},
+      {"meaning", effect.meaning},
+      {"observable", c.score.unobservable.empty()},
+      {"why_unobservable", c.score.unobservable.empty() ? json() : json(c.score.unobservable)},
+      {"score_z", finite(c.score.z)},
+      {"score_p", finite(c.score.p)},
+      {"score_p_holm", finite(c.score.adjusted_p)},
+      {"refitted", c.refitted},
+      {"rmse_N", c.refitted ? finite(c.rmse) : json()},
+      {"delta_bic", c.refitted ? finite(c.delta_bic) : json()},
+      {"value", values},
+      {"interval95", intervals},
+      {"plausible", c.plausible},
+      {"why_implausible", c.why_implausible.empty() ? json() : json(c.why_implausible)},
+      {"why_not_named", c.why_too_small.empty() ? json() : json(c.why_too_small)},
+      {"heldout_improves", c.heldout_improves ? json(*c.heldout_improves) : json()},
+      {"detectable", {{"key", effect.numbers.front().parameter.key}, {"size", finite(c.score.detectable)}}},
+      {"class", c.class_index}};
 }
 
 /// By the names of the fitted series.
@@ -177,7 +179,8 @@ json series_json(const Trace& trace, std::size_t k) {
 json remaining_json(const Trace& trace) {
   return {{"rmse_N", finite(trace.remaining.rmse)},
           {"upper95_N", finite(trace.remaining.upper)},
-          {"share_of_peak_force", trace.peak_force > 0.0 ? finite(trace.remaining.upper / trace.peak_force) : json()},
+          {"share_of_peak_force",
+           trace.peak_force > 0.0 ? finite(trace.remaining.upper / trace.peak_force) : json()},
           {"share_of_excess", finite(trace.remaining.share_of_excess)},
           {"channel", trace.remaining.channel.empty() ? json() : json(trace.remaining.channel)}};
 }
@@ -234,7 +237,8 @@ json findings_document(const identification::Experiment& experiment, const Trace
   json functions = json::array();
   for (const identification::ChannelFunction& f : trace.functions) functions.push_back(function_json(f));
   json alternatives = json::array();
-  for (const identification::ChannelFunction& f : trace.alternatives) alternatives.push_back(function_json(f));
+  for (const identification::ChannelFunction& f : trace.alternatives)
+    alternatives.push_back(function_json(f));
   json rounds = json::array();
   for (const Round& round : trace.rounds) rounds.push_back(round_json(trace, round));
   json result{{"schema", "snare-trace/1"},

@@ -21,7 +21,8 @@ namespace snare::results {
 [[nodiscard]] identification::TraceOptions fitting_options();
 
 /// A trace with these options as fit.json (docs/trace_json.md). What is doubtful is under "warnings".
-[[nodiscard]] nlohmann::json fit_json(const identification::Experiment& experiment, const identification::Trace& trace);
+[[nodiscard]] nlohmann::json fit_json(const identification::Experiment& experiment,
+                                      const identification::Trace& trace);
 
 /// The columns `base_N` and `final_N` that curves.csv has after a trace or a fit.
 [[nodiscard]] std::vector<CurveColumn> curve_columns(const identification::Trace& trace);

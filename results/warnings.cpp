@@ -36,7 +36,8 @@ class Sentences {
 /// Warns of a wire that leaves the pusher as the pusher moves on. A pusher that is drawn back leaves the wire as it should.
 std::vector<std::string> lost_contact(const std::vector<PushPoint>& points) {
   if (points.empty() || points.back().in_contact) return {};
-  const auto last = std::find_if(points.rbegin(), points.rend(), [](const PushPoint& p) { return p.in_contact; });
+  const auto last =
+      std::find_if(points.rbegin(), points.rend(), [](const PushPoint& p) { return p.in_contact; });
   if (last == points.rend()) return {"the pusher never touches the wire: every force is zero"};
   if (std::prev(last)->travel < last->travel) return {};
   return {fmt::format("the wire leaves the pusher after a travel of {:.4g} mm: no force from there on",
@@ -134,14 +135,16 @@ std::vector<std::string> energy_doubts(const FinishedMotion& run) {
   double exchanged = 0.0, gained = 0.0;
   for (const coupling::MotionSample& s : samples) {
     const coupling::EnergyBalance& e = s.energy;
-    for (const double change : {e.kinetic - start.kinetic, e.strain - start.strain, e.potential - start.potential,
-                                e.dissipated - start.dissipated, e.work - start.work})
+    for (const double change :
+         {e.kinetic - start.kinetic, e.strain - start.strain, e.potential - start.potential,
+          e.dissipated - start.dissipated, e.work - start.work})
       exchanged = std::max(exchanged, std::abs(change));
     if (std::abs(e.integrator) > std::abs(gained)) gained = e.integrator;
   }
   if (exchanged < least || std::abs(gained) <= most * exchanged) return {};
   return {fmt::format(
-      "the integrator {} {:.3g} J, {:.2g} % of the {:.3g} J that were exchanged: take smaller tolerances ([solver])",
+      "the integrator {} {:.3g} J, {:.2g} % of the {:.3g} J that were exchanged: take smaller tolerances "
+      "([solver])",
       gained > 0.0 ? "gained" : "lost", std::abs(gained), 100.0 * std::abs(gained) / exchanged, exchanged)};
 }
 
@@ -168,22 +171,26 @@ std::vector<std::string> motion_warnings(const std::vector<FinishedMotion>& fini
         for (std::size_t end = 2 * k; end < std::min(2 * k + 2, s.mount_forces.size()); ++end)
           tension = std::max(tension, s.mount_forces[end].norm());
       }
-      const std::string wire = of + (motion.wires[k].name == "wire" ? "the wire" : "wire " + motion.wires[k].name);
+      const std::string wire =
+          of + (motion.wires[k].name == "wire" ? "the wire" : "wire " + motion.wires[k].name);
       if (tension > strength) {
         sentences.add(
             wire,
-            {fmt::format("a mount holds it with {:.4g} N; the strongest wire of steel of {:.4g} mm breaks at {:.4g} N",
-                         tension, 1e3 * diameter, strength)});
+            {fmt::format(
+                "a mount holds it with {:.4g} N; the strongest wire of steel of {:.4g} mm breaks at {:.4g} N",
+                tension, 1e3 * diameter, strength)});
       }
       const wire::RodInMotion& rod = motion.wires[k].rod;
-      const double limit = wire::breaking_speed(rod.properties.axial_stiffness, rod.mass_per_length, strength);
+      const double limit =
+          wire::breaking_speed(rod.properties.axial_stiffness, rod.mass_per_length, strength);
       for (const coupling::MotionEvent& e : run.result.events) {
         const auto contact = static_cast<std::size_t>(e.contact);
         if (contact >= motion.contacts.size() || motion.contacts[contact].wire != static_cast<int>(k) ||
             e.kind != coupling::MotionEvent::Kind::touch || e.approach_speed <= limit)
           continue;
-        sentences.add(wire, {fmt::format("is struck at {:.4g} m/s; a wire of steel breaks at once at {:.4g} m/s",
-                                         e.approach_speed, limit)});
+        sentences.add(wire,
+                      {fmt::format("is struck at {:.4g} m/s; a wire of steel breaks at once at {:.4g} m/s",
+                                   e.approach_speed, limit)});
         break;
       }
     }
@@ -198,9 +205,10 @@ std::vector<std::string> motion_warnings(const std::vector<FinishedMotion>& fini
       });
       if (left == run.samples.end()) continue;
       const coupling::ContactSample& c = left->contacts[first + k];
-      sentences.add(of + wire.name,
-                    {fmt::format("its law was made for less: from {:.4g} s on it is pushed by {:.4g} mm at {:.4g} mm",
-                                 left->time, -1e3 * c.gap, 1e3 * c.arc / wire.length * span)});
+      sentences.add(
+          of + wire.name,
+          {fmt::format("its law was made for less: from {:.4g} s on it is pushed by {:.4g} mm at {:.4g} mm",
+                       left->time, -1e3 * c.gap, 1e3 * c.arc / wire.length * span)});
     }
   }
   return sentences.take();

@@ -8,7 +8,7 @@ namespace snare::results {
 /// Who looks at long work from outside. Either function may be empty; both may be called from any thread.
 struct Watch {
   std::function<void(const std::string& stage)> progress;  ///< what is under way, for a person
-  std::function<bool()> stop;                              ///< true: the work ends at the next point where it can
+  std::function<bool()> stop;  ///< true: the work ends at the next point where it can
 
   /// Tells a stage where somebody listens.
   void say(const std::string& stage) const {

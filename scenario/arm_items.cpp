@@ -80,7 +80,8 @@ std::optional<Aim> read_aim(const TomlTable& table, const multibody::ArmDescript
     if (table.has("held_joints")) table.fail("held_joints", "only beside reach_frame");
     return std::nullopt;
   }
-  if (table.has("tip_frame")) table.fail("reach_frame", "cannot stand beside tip_frame, by which the base follows");
+  if (table.has("tip_frame"))
+    table.fail("reach_frame", "cannot stand beside tip_frame, by which the base follows");
   Aim aim{table, read_place(table, "reach"), {}, {}};
   const std::vector<std::string> held = table.texts_or_none("held_joints");
   std::string known;
@@ -113,8 +114,9 @@ void reach(const Aim& aim, int tip, const Pose& X_WT, coupling::MotionArm& arm) 
   const multibody::Tree& tree = arm.arm.tree;
   const multibody::Reach r = multibody::reach_pose(tree, tip, X_WT, arm.start.q, aim.joints);
   if (!r.found() && r.beyond < 0) {
-    aim.table.fail("reach_frame", fmt::format("is out of reach: the tip comes no nearer than {:.6g} mm and {:.6g} deg",
-                                              r.distance / base::mm, r.angle / base::degree));
+    aim.table.fail("reach_frame",
+                   fmt::format("is out of reach: the tip comes no nearer than {:.6g} mm and {:.6g} deg",
+                               r.distance / base::mm, r.angle / base::degree));
     return;
   }
   if (!r.found()) {
@@ -123,9 +125,10 @@ void reach(const Aim& aim, int tip, const Pose& X_WT, coupling::MotionArm& arm) 
     const double unit = turns ? base::degree : base::mm;
     aim.table.fail(
         "reach_frame",
-        fmt::format("is reached only beyond limits: nearest with {} at {:.6g} {}, allowed are {:.6g} to {:.6g}",
-                    aim.names[at(r.beyond)], r.beyond_at / unit, turns ? "deg" : "mm", joint.lower / unit,
-                    joint.upper / unit));
+        fmt::format(
+            "is reached only beyond limits: nearest with {} at {:.6g} {}, allowed are {:.6g} to {:.6g}",
+            aim.names[at(r.beyond)], r.beyond_at / unit, turns ? "deg" : "mm", joint.lower / unit,
+            joint.upper / unit));
     return;
   }
   for (int j = 0; j < arm.arm.motors(); ++j) {
@@ -147,13 +150,14 @@ void stand_arm(int tip, const Stand& stand, const PlacedFrame& on, coupling::Mot
 }
 
 /// Adds the frames of an arm that stands in its place.
-void add_frames(const std::string& name, int index, int tip, const coupling::MotionArm& arm, Placement& placement) {
+void add_frames(const std::string& name, int index, int tip, const coupling::MotionArm& arm,
+                Placement& placement) {
   const multibody::Tree& tree = arm.arm.tree;
   multibody::Kinematics kinematics(tree);
   multibody::place(tree, arm.start.q, kinematics);
   const auto add = [&](const std::string& frame_name, int frame) {
-    placement.add(frame_name,
-                  {{coupling::MotionCarrier::Kind::arm, index, frame}, multibody::frame_pose(tree, kinematics, frame)});
+    placement.add(frame_name, {{coupling::MotionCarrier::Kind::arm, index, frame},
+                               multibody::frame_pose(tree, kinematics, frame)});
   };
   for (int frame = 1; frame < static_cast<int>(tree.frames().size()); ++frame)
     add(name + "::" + tree.frame(frame).name, frame);
@@ -166,12 +170,13 @@ void read_arms(Composition& c) {
   for (const TomlTable& table : c.document.root().tables("arms")) {
     const std::string name = c.arm_names.take(table);
     const std::string file = table.text("file");
-    const Hold how = table.has("hold") ? table.choice("hold", holds).value_or(Hold::as_described) : Hold::as_described;
+    const Hold how =
+        table.has("hold") ? table.choice("hold", holds).value_or(Hold::as_described) : Hold::as_described;
     const Stand stand = read_stand(table);
     std::optional<multibody::ArmDescription> described;
     if (!file.empty())
-      described =
-          base::read_beside(c.document, [&] { return multibody::read_arm(c.folder / file, c.arm_overrides[name]); });
+      described = base::read_beside(
+          c.document, [&] { return multibody::read_arm(c.folder / file, c.arm_overrides[name]); });
     const int index = static_cast<int>(c.motion.arms.size());
     coupling::MotionArm& arm = c.motion.arms.emplace_back();
     arm.name = name;
@@ -197,29 +202,31 @@ void read_arms(Composition& c) {
     for (int j = 0; j < arm.arm.motors(); ++j) {
       const multibody::ElasticJoint& joint = arm.arm.joints[at(j)];
       if (joint.flexure) continue;  // nothing drives it
-      c.joints[name + "::" + joint.name] = {index, j,
-                                            arm.arm.tree.body(joint.body).joint == multibody::JointKind::prismatic};
+      c.joints[name + "::" + joint.name] = {
+          index, j, arm.arm.tree.body(joint.body).joint == multibody::JointKind::prismatic};
     }
-    c.placement.stand(
-        table, key, name,
-        [&c, table, key, name, index, stand, aim, tip = described->tip](const PlacedFrame& on, Placement& placement) {
-          if (!stand.by_tip && on.carrier.kind != coupling::MotionCarrier::Kind::world)
-            table.fail(
-                key,
-                "must stand still: \"world\" or a frame on it; tip_frame places an arm whose file has a free base");
-          stand_arm(tip, stand, on, c.motion.arms[at(index)]);
-          if (!aim) {
-            add_frames(name, index, tip, c.motion.arms[at(index)], placement);
-            return;
-          }
-          placement.stand(
-              table, "reach_frame", name, [&c, name, index, aim, tip](const PlacedFrame& at_tip, Placement& p) {
-                const TomlTable& asked = aim->table;
-                if (p.find(asked.text_or("reach_frame", "world")) && p.find(asked.text_or("base_frame", "world")))
-                  reach(*aim, tip, at_tip.X_WF * aim->X_FT, c.motion.arms[at(index)]);
-                add_frames(name, index, tip, c.motion.arms[at(index)], p);
-              });
-        });
+    c.placement.stand(table, key, name,
+                      [&c, table, key, name, index, stand, aim, tip = described->tip](const PlacedFrame& on,
+                                                                                      Placement& placement) {
+                        if (!stand.by_tip && on.carrier.kind != coupling::MotionCarrier::Kind::world)
+                          table.fail(key,
+                                     "must stand still: \"world\" or a frame on it; tip_frame places an arm "
+                                     "whose file has a free base");
+                        stand_arm(tip, stand, on, c.motion.arms[at(index)]);
+                        if (!aim) {
+                          add_frames(name, index, tip, c.motion.arms[at(index)], placement);
+                          return;
+                        }
+                        placement.stand(table, "reach_frame", name,
+                                        [&c, name, index, aim, tip](const PlacedFrame& at_tip, Placement& p) {
+                                          const TomlTable& asked = aim->table;
+                                          if (p.find(asked.text_or("reach_frame", "world")) &&
+                                              p.find(asked.text_or("base_frame", "world")))
+                                            reach(*aim, tip, at_tip.X_WF * aim->X_FT,
+                                                  c.motion.arms[at(index)]);
+                                          add_frames(name, index, tip, c.motion.arms[at(index)], p);
+                                        });
+                      });
   }
 }
 

@@ -38,8 +38,8 @@ multibody::ArmScenario joint_step(const multibody::ArmDescription& description, 
   return scenario;
 }
 
-multibody::ArmScenario commanded_step(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
-                                      int joint, double step, double end) {
+multibody::ArmScenario commanded_step(const multibody::ArmDescription& description,
+                                      const Eigen::VectorXd& angles, int joint, double step, double end) {
   multibody::ArmScenario scenario = standing(description, angles, end);
   for (int k = 0; k < description.arm.motors(); ++k) {
     if (k != joint) scenario.drives[at(k)] = multibody::Drive::locked();
@@ -51,8 +51,9 @@ multibody::ArmScenario commanded_step(const multibody::ArmDescription& descripti
   return scenario;
 }
 
-multibody::ArmScenario tip_impulse(const multibody::ArmDescription& description, const Eigen::VectorXd& angles,
-                                   Hold how, const Eigen::Vector3d& impulse, double duration, double end) {
+multibody::ArmScenario tip_impulse(const multibody::ArmDescription& description,
+                                   const Eigen::VectorXd& angles, Hold how, const Eigen::Vector3d& impulse,
+                                   double duration, double end) {
   multibody::ArmScenario scenario = standing(description, angles, end);
   hold(how, angles, description.arm, scenario.drives);
   // The area of half a sine is 2/pi of its peak times its duration.
@@ -70,7 +71,8 @@ multibody::ArmScenario joint_motion(const multibody::ArmDescription& description
   for (int k = 0; k < description.arm.motors(); ++k) {
     if (description.arm.joints[at(k)].flexure) continue;
     multibody::Drive& drive = scenario.drives[at(k)];
-    if (drive.mode != multibody::DriveMode::servo) throw std::invalid_argument("a joint that moves needs a servo");
+    if (drive.mode != multibody::DriveMode::servo)
+      throw std::invalid_argument("a joint that moves needs a servo");
     drive.course = {from[k], to[k], 0.0, duration};
   }
   return scenario;

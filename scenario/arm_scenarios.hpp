@@ -15,11 +15,13 @@ namespace snare::scenario {
 /// (A.17)
 /// joint: index; step [rad].
 [[nodiscard]] multibody::ArmScenario joint_step(const multibody::ArmDescription& description,
-                                                const Eigen::VectorXd& angles, int joint, double step, double end);
+                                                const Eigen::VectorXd& angles, int joint, double step,
+                                                double end);
 
 /// The same with the motor driven by its servo to the new angle, as a command would. angles and step [rad], end [s].
 [[nodiscard]] multibody::ArmScenario commanded_step(const multibody::ArmDescription& description,
-                                                    const Eigen::VectorXd& angles, int joint, double step, double end);
+                                                    const Eigen::VectorXd& angles, int joint, double step,
+                                                    double end);
 
 /// An arm at rest, pushed at its tip by half a sine of force, in the world's axes.
 /// impulse: of the force [N s]; duration > 0 [s], from t = 0.
@@ -34,7 +36,7 @@ namespace snare::scenario {
                                                   double duration, double end);
 
 /// The swings of a joint in a history.
-[[nodiscard]] std::vector<Swing> swings(const multibody::ArmHistory& history, const multibody::ElasticArm& arm,
-                                        int joint);
+[[nodiscard]] std::vector<Swing> swings(const multibody::ArmHistory& history,
+                                        const multibody::ElasticArm& arm, int joint);
 
 }  // namespace snare::scenario

@@ -45,8 +45,8 @@ void check_pusher(const DeclaredWire& wire, const ShaftSize& size, const TomlTab
   constexpr double same = 1e-6;
   const double radius = wire.push->table->wire.radius;
   if (std::abs(size.radius - radius) > same * std::max(radius, 1e-3))
-    shape.fail("radius_mm", fmt::format("must be {:.6g}, with which the law of {} was distilled", radius / base::mm,
-                                        wire.wire.name));
+    shape.fail("radius_mm", fmt::format("must be {:.6g}, with which the law of {} was distilled",
+                                        radius / base::mm, wire.wire.name));
 }
 
 }  // namespace
@@ -59,15 +59,16 @@ void set_shaft(Composition& c, const std::string& name, const PlacedShape& shape
     if (!law) continue;
     const std::string& of = c.wires[at(wire)].wire.name;
     if (!size) {
-      shape.table.fail("kind",
-                       fmt::format("must be a capsule, knife_edge, cylinder or grapple_shaft to meet {}, for which a "
-                                   "law stands; wires = [...] names those that it meets",
-                                   of));
+      shape.table.fail(
+          "kind",
+          fmt::format("must be a capsule, knife_edge, cylinder or grapple_shaft to meet {}, for which a "
+                      "law stands; wires = [...] names those that it meets",
+                      of));
       continue;
     }
     if (law->shaft.half_length > 0.0) {
-      shape.table.fail(
-          "wires", fmt::format("must not have {}, for which a law stands: it meets {} already", of, law->shaft.name));
+      shape.table.fail("wires", fmt::format("must not have {}, for which a law stands: it meets {} already",
+                                            of, law->shaft.name));
       continue;
     }
     law->shaft = {name, shape.on.carrier, shape.on.X_WF, size->radius, size->half_length};
@@ -83,19 +84,22 @@ void set_shaft(Composition& c, const std::string& name, const PlacedShape& shape
 void require_shafts(Composition& c) {
   for (const DeclaredWire& w : c.wires) {
     if (w.law && !(w.law->shaft.half_length > 0.0))
-      c.document.root().fail("shapes", fmt::format("must have one that {} meets, for which a law stands", w.wire.name));
+      c.document.root().fail("shapes",
+                             fmt::format("must have one that {} meets, for which a law stands", w.wire.name));
   }
 }
 
 void read_body_contact(Composition& c, const TomlTable& table, const std::string& name) {
-  static constexpr Choice<LawModel> laws[] = {
-      {"spring_dashpot", LawModel::spring_dashpot}, {"power", LawModel::power}, {"step_damped", LawModel::step_damped}};
+  static constexpr Choice<LawModel> laws[] = {{"spring_dashpot", LawModel::spring_dashpot},
+                                              {"power", LawModel::power},
+                                              {"step_damped", LawModel::step_damped}};
   coupling::BodyContact contact;
   contact.name = name;
   const PlacedShape* shape = shape_under(c, table, "shape");
   const PlacedShape* other = shape_under(c, table, "other_shape");
   if (const auto model = table.choice("model", laws)) contact.law = read_contact_law(table, *model);
-  contact.friction = read_friction(table, table.number_or("friction", 0.0, Range::from(0.0, 5.0)), "friction");
+  contact.friction =
+      read_friction(table, table.number_or("friction", 0.0, Range::from(0.0, 5.0)), "friction");
   if (shape == nullptr || other == nullptr) return;
   const bool same = shape->on.carrier.kind == other->on.carrier.kind &&
                     shape->on.carrier.index == other->on.carrier.index &&
@@ -103,7 +107,8 @@ void read_body_contact(Composition& c, const TomlTable& table, const std::string
   if (same) table.fail("other_shape", "must be carried by something else than the first");
   const ShapePoints points = read_shape_points(other->table, c.folder);
   if (points.points.empty())
-    table.fail("other_shape", "must have points with which it touches: a plane has none, and may be the first");
+    table.fail("other_shape",
+               "must have points with which it touches: a plane has none, and may be the first");
   contact.carrier = shape->on.carrier;
   contact.X_WS = shape->on.X_WF;
   contact.shape = shape->shape;

@@ -47,15 +47,17 @@ void read_bodies(Composition& c) {
     DeclaredBody declared = read_body(table);
     c.motion.bodies.push_back(std::move(declared.body));
     c.motion.bodies.back().name = name;
-    const Pose X_CB{Eigen::Matrix3d::Identity(), -declared.com};  // of the body's frame in that of its centre of mass
-    c.placement.stand(table, "frame", name, [&c, index, name, X_CB](const PlacedFrame& on, Placement& placement) {
-      multibody::RigidBodyState& start = c.motion.bodies[at(index)].start;
-      const Pose X_WC = on.X_WF * pose_of(start);
-      start.position = X_WC.p;
-      start.orientation = Eigen::Quaterniond(X_WC.R);
-      start.velocity = on.X_WF.R * start.velocity;
-      placement.add(name, {{MotionCarrier::Kind::body, index, 0}, X_WC * X_CB});
-    });
+    const Pose X_CB{Eigen::Matrix3d::Identity(),
+                    -declared.com};  // of the body's frame in that of its centre of mass
+    c.placement.stand(table, "frame", name,
+                      [&c, index, name, X_CB](const PlacedFrame& on, Placement& placement) {
+                        multibody::RigidBodyState& start = c.motion.bodies[at(index)].start;
+                        const Pose X_WC = on.X_WF * pose_of(start);
+                        start.position = X_WC.p;
+                        start.orientation = Eigen::Quaterniond(X_WC.R);
+                        start.velocity = on.X_WF.R * start.velocity;
+                        placement.add(name, {{MotionCarrier::Kind::body, index, 0}, X_WC * X_CB});
+                      });
   }
 }
 
@@ -81,7 +83,8 @@ void read_wires(Composition& c) {
 }
 
 /// Adds a warning where a mesh is so small or so large that its unit is more likely the other one.
-void doubt_size(Composition& c, const std::string& name, const std::string& unit, const coupling::ContactShape& shape) {
+void doubt_size(Composition& c, const std::string& name, const std::string& unit,
+                const coupling::ContactShape& shape) {
   constexpr double smallest = 0.5 * base::mm,
                    largest = 500.0;  // a body that a wire of a millimetre holds, and one of this world [m]
   Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -91,11 +94,12 @@ void doubt_size(Composition& c, const std::string& name, const std::string& unit
   }
   const double size = (high - low).maxCoeff();
   if (unit == "mm" && size < smallest)
-    c.warnings.push_back(fmt::format(
-        "shape {}: its mesh is only {:.3g} mm large: is the file in metres (unit = \"m\")?", name, size / base::mm));
-  if (unit == "m" && size > largest)
     c.warnings.push_back(
-        fmt::format("shape {}: its mesh is {:.3g} m large: is the file in millimetres (unit = \"mm\")?", name, size));
+        fmt::format("shape {}: its mesh is only {:.3g} mm large: is the file in metres (unit = \"m\")?", name,
+                    size / base::mm));
+  if (unit == "m" && size > largest)
+    c.warnings.push_back(fmt::format(
+        "shape {}: its mesh is {:.3g} m large: is the file in millimetres (unit = \"mm\")?", name, size));
 }
 
 void read_shapes(Composition& c) {
@@ -103,7 +107,8 @@ void read_shapes(Composition& c) {
     const std::string name = c.shape_names.take(table);
     const coupling::MotionContact shape = read_contact_shape(table, c.folder, c.input);
     const char* key = table.has("body") ? "body" : "frame";
-    if (table.has("body") && table.has("frame")) table.fail("frame", "cannot stand beside body, which means the same");
+    if (table.has("body") && table.has("frame"))
+      table.fail("frame", "cannot stand beside body, which means the same");
     const std::optional<PlacedFrame> frame = c.placement.frame(table, key);
     const double mass = table.number_or("mass_kg", light, Range::above(0.0, 1e7));
     const std::vector<int> on = wires_met(table, c.wire_names, c.wires.size());
@@ -180,8 +185,10 @@ void read_welds(Composition& c) {
     if (!index || !on) continue;
     weld.body = *index;
     weld.carrier = on->carrier;
-    if (c.motion.bodies[at(*index)].driven) table.fail("body", "is driven: it moves as told, whatever holds it");
-    if (!held.insert(*index).second) table.fail("body", "is welded already: two welds would hold six freedoms twice");
+    if (c.motion.bodies[at(*index)].driven)
+      table.fail("body", "is driven: it moves as told, whatever holds it");
+    if (!held.insert(*index).second)
+      table.fail("body", "is welded already: two welds would hold six freedoms twice");
     if (weld.carrier.kind == MotionCarrier::Kind::body && weld.carrier.index == *index)
       table.fail("frame", "must not be on the body itself");
     c.motion.welds.push_back(weld);
@@ -234,7 +241,8 @@ void add_mounts(Composition& c) {
   }
   if (leave_the_world && c.damping.mass_rate > 0.0)
     c.document.root().table("damping").fail(
-        "mass_rate_1_s", "must be 0: it drags against the world, which wires on arms, bodies and snares leave");
+        "mass_rate_1_s",
+        "must be 0: it drags against the world, which wires on arms, bodies and snares leave");
 }
 
 /// Refuses a shaft that has pushed the wire at the start: it has no side to which it belongs.
@@ -248,8 +256,8 @@ void require_before(const coupling::LawWire& wire) {
   const bool beside = chord.dot(place) <= 0.0 || chord.dot(place) >= (wire.p_to - wire.p_from).norm();
   constexpr double rounding = 1e-6;  // of places in a file [m]
   if (!beside && depth > rounding)
-    throw base::InputError({"", 0, fmt::format("{} on {}.gap", wire.shaft.name, wire.name), fmt::format("{}", -depth),
-                            "must be >= 0 m at the start"});
+    throw base::InputError({"", 0, fmt::format("{} on {}.gap", wire.shaft.name, wire.name),
+                            fmt::format("{}", -depth), "must be >= 0 m at the start"});
 }
 
 /// Laws of pushes know their wire at rest. One may be without force over the first part of its travel: steps are limited to a tenth of a
@@ -264,7 +272,8 @@ void complete_pushes(Composition& c, coupling::MotionOptions& options) {
     require_before(law);
     if (law.shaft.carrier.kind != MotionCarrier::Kind::body) continue;
     const multibody::RigidBodyState& start = c.motion.bodies[at(law.shaft.carrier.index)].start;
-    const double speed = start.velocity.norm() + start.spin.norm() * (law.shaft.X_WS.p - start.position).norm();
+    const double speed =
+        start.velocity.norm() + start.spin.norm() * (law.shaft.X_WS.p - start.position).norm();
     constexpr double resolved_travel = 1e-4;  // [m]
     if (w.push->law && speed > 0.0) options.max_step = std::min(options.max_step, resolved_travel / speed);
   }
@@ -292,8 +301,8 @@ ArmOverrides take_arm_overrides(std::vector<base::Override>& overrides) {
   return arms;
 }
 
-WireMotions read_composition(TomlDocument& document, const std::filesystem::path& folder, const ArmOverrides& arms,
-                             WireMesh mesh) {
+WireMotions read_composition(TomlDocument& document, const std::filesystem::path& folder,
+                             const ArmOverrides& arms, WireMesh mesh) {
   const TomlTable root = document.root();
   NamedMotion run;
   run.name = root.text("title");
@@ -338,7 +347,8 @@ WireMotions read_composition(TomlDocument& document, const std::filesystem::path
   motions.output = read_motion_output(output, run.options);
   motions.output.modes = output.boolean_or("modes", false);
   if (output.has("swings")) {
-    if (const MotorJoint* joint = c.joint(output, "swings")) motions.swinging.emplace(joint->arm, joint->joint);
+    if (const MotorJoint* joint = c.joint(output, "swings"))
+      motions.swinging.emplace(joint->arm, joint->joint);
   }
   motions.capture = read_capture(c);
   motions.input = c.input + document.canonical(least_advance_key);

@@ -20,8 +20,8 @@ const MotorJoint* Composition::joint(const TomlTable& table, std::string_view ke
   std::string known;
   for (const auto& [one, motor] : joints) known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", one);
   if (!name.empty() && !placement.is_excused(name))
-    table.fail(
-        key, known.empty() ? "must be a joint with a motor; there is none" : "must be a joint with a motor: " + known);
+    table.fail(key, known.empty() ? "must be a joint with a motor; there is none"
+                                  : "must be a joint with a motor: " + known);
   return nullptr;
 }
 
@@ -52,7 +52,8 @@ int Composition::counted(int declared) const {
   const auto before = wires.begin() + declared;
   const auto laws = static_cast<int>(std::count_if(wires.begin(), before, by_law));
   if (!wires[at(declared)].law) return declared - laws;
-  return static_cast<int>(wires.size() - at(static_cast<int>(std::count_if(wires.begin(), wires.end(), by_law)))) +
+  return static_cast<int>(wires.size() -
+                          at(static_cast<int>(std::count_if(wires.begin(), wires.end(), by_law)))) +
          laws;
 }
 
@@ -79,8 +80,8 @@ int Composition::body_on(const PlacedFrame& frame, const std::string& name, doub
   return index;
 }
 
-void Composition::add_shape(const std::string& name, const coupling::MotionContact& shape, const PlacedFrame& frame,
-                            double mass, const std::vector<int>& on) {
+void Composition::add_shape(const std::string& name, const coupling::MotionContact& shape,
+                            const PlacedFrame& frame, double mass, const std::vector<int>& on) {
   if (std::all_of(on.begin(), on.end(), [this](int wire) { return wires[at(wire)].law.has_value(); })) return;
   const int body = body_on(frame, name, mass);
   const Pose X_BF = pose_of(motion.bodies[at(body)].start).inverse() * frame.X_WF;

@@ -99,7 +99,8 @@ coupling::ForceTable table_of(const Field& table, const Field& nodes) {
   const coupling::ForceTable::Axes axes{knots_of(table["travel"], 2), knots_of(table["position"], 1),
                                         knots_of(table["slack"], 1)};
   std::vector<double> numbers = nodes.numbers();
-  const std::size_t wanted = coupling::ForceTable::numbers_a_node * axes[0].size() * axes[1].size() * axes[2].size();
+  const std::size_t wanted =
+      coupling::ForceTable::numbers_a_node * axes[0].size() * axes[1].size() * axes[2].size();
   if (numbers.size() != wanted) nodes.fail(fmt::format("must be {} numbers, eight a node", wanted));
   return coupling::ForceTable::from_nodes(axes, std::move(numbers), table["span_m"].positive(),
                                           table["force_scale_N"].positive(), table["mirrored"].boolean());
@@ -132,12 +133,14 @@ DistilledLoss read_loss(const Field& at) {
   if (at.has("load_unload")) {
     const Field loop = at["load_unload"];
     loss.loop = {loop["returned"].number(), loop["turn_mm"].positive() * mm, loop["loop_J"].number()};
-    if (!(loss.loop->returned >= 0.0 && loss.loop->returned <= 1.0)) loop["returned"].fail("must be from 0 to 1");
+    if (!(loss.loop->returned >= 0.0 && loss.loop->returned <= 1.0))
+      loop["returned"].fail("must be from 0 to 1");
   }
   if (!at.has("impacts")) return loss;
   for (const Field& impact : at["impacts"].items()) {
     if (loss.dashpot || impact["damping_Ns_m"].is_null()) continue;
-    loss.dashpot = {impact["speed_m_s"].positive(), impact["restitution"].number(), impact["damping_Ns_m"].number()};
+    loss.dashpot = {impact["speed_m_s"].positive(), impact["restitution"].number(),
+                    impact["damping_Ns_m"].number()};
     if (!(loss.dashpot->damping >= 0.0)) impact["damping_Ns_m"].fail("must be >= 0");
   }
   return loss;
@@ -149,7 +152,8 @@ DistilledLaw law_of(const Field& entry, const std::string& title) {
   const Field table = entry["table"];
   law.loading = std::make_shared<const coupling::ForceTable>(table_of(table, table["nodes"]));
   if (table.has("unloading"))
-    law.unloading = std::make_shared<const coupling::ForceTable>(table_of(table, table["unloading"]["nodes"]));
+    law.unloading =
+        std::make_shared<const coupling::ForceTable>(table_of(table, table["unloading"]["nodes"]));
   law.bound = table["error"]["bound_N"].number();
   law.force_range = table["error"]["force_range_N"].number();
   const Field wire = entry["wire"];
@@ -184,8 +188,8 @@ std::vector<coupling::LawParameter> parameters_of_law(const std::string& name) {
   return form == nullptr ? std::vector<coupling::LawParameter>() : form->parameters();
 }
 
-SimpleLaw make_simple_law(const std::string& name, const coupling::LawPlace& place, std::vector<double> values,
-                          std::array<double, 2> travel) {
+SimpleLaw make_simple_law(const std::string& name, const coupling::LawPlace& place,
+                          std::vector<double> values, std::array<double, 2> travel) {
   const coupling::LawFormPointer form = form_of(name, place);
   SimpleLaw one;
   one.position = place.position;
@@ -196,7 +200,8 @@ SimpleLaw make_simple_law(const std::string& name, const coupling::LawPlace& pla
   one.values = std::move(values);
   one.travel = travel;
   one.law = std::make_shared<const coupling::RangedLaw>(
-      form->with(Eigen::Map<const Eigen::VectorXd>(one.values.data(), static_cast<Eigen::Index>(one.values.size()))),
+      form->with(
+          Eigen::Map<const Eigen::VectorXd>(one.values.data(), static_cast<Eigen::Index>(one.values.size()))),
       travel[1]);
   return one;
 }
@@ -236,7 +241,8 @@ std::vector<DistilledLaw> read_law_file(const std::filesystem::path& file) {
 }
 
 std::vector<DistilledLaw> read_laws(const std::string& name, const json& document) {
-  if (!document.is_object()) throw base::InputError(base::InputProblem{name, 0, "", "", "must be JSON, an object"});
+  if (!document.is_object())
+    throw base::InputError(base::InputProblem{name, 0, "", "", "must be JSON, an object"});
   const Field top(name, document, "");
   if (const Field schema = top["schema"]; schema.text() != "snare-law/1")
     schema.fail("must be \"snare-law/1\": the law.json of `snare distil`");

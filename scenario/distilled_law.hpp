@@ -66,12 +66,13 @@ struct ContinuedForce {
 /// What a law.json says of one wire, ready to be evaluated. Lengths in m, forces in N.
 struct DistilledLaw {
   std::string title;
-  std::shared_ptr<const coupling::ForceTable> loading;    ///< never null
-  std::shared_ptr<const coupling::ForceTable> unloading;  ///< from the end of the travel; null where nothing dissipates
-  double bound = 0.0;                                     ///< stated error of the table [N]
-  double force_range = 0.0;                               ///< of the full wire over the range [N]
-  std::array<double, 2> travel{}, position{}, slack{};    ///< from, to [m]
-  double nominal_slack = 0.0;                             ///< length less span [m]
+  std::shared_ptr<const coupling::ForceTable> loading;  ///< never null
+  std::shared_ptr<const coupling::ForceTable>
+      unloading;             ///< from the end of the travel; null where nothing dissipates
+  double bound = 0.0;        ///< stated error of the table [N]
+  double force_range = 0.0;  ///< of the full wire over the range [N]
+  std::array<double, 2> travel{}, position{}, slack{};  ///< from, to [m]
+  double nominal_slack = 0.0;                           ///< length less span [m]
   std::vector<SimpleLaw> simple;
   std::vector<DistilledLoss> losses;  ///< one a law position, in the order of the file
   DistilledWire wire;

@@ -32,8 +32,9 @@ struct Units {
 };
 constexpr Units of_angles{"to_deg",   "by_deg",    "rate_deg_s", "proportional_Nm_rad", "derivative_Nms_rad",
                           "limit_Nm", "angle_deg", "torque_Nm",  base::degree};
-constexpr Units of_lengths{"to_mm",       "by_mm",   "rate_mm_s", "proportional_N_m", "derivative_Ns_m", "limit_N",
-                           "position_mm", "force_N", base::mm};
+constexpr Units of_lengths{"to_mm",           "by_mm",   "rate_mm_s",   "proportional_N_m",
+                           "derivative_Ns_m", "limit_N", "position_mm", "force_N",
+                           base::mm};
 
 using CourseMaker = std::function<Course(double time, double from)>;
 
@@ -66,12 +67,14 @@ CourseMaker table_course(const TomlTable& table, const std::filesystem::path& fo
   if (name.empty()) return {};
   try {
     const base::CsvTable csv = base::read_csv(
-        folder / name, {{"time_s", base::CsvColumn::Presence::required, Range::from(0.0, 1e6)},
-                        {column, base::CsvColumn::Presence::required, Range::from(-1e6, 1e6), factor * u.unit}});
+        folder / name,
+        {{"time_s", base::CsvColumn::Presence::required, Range::from(0.0, 1e6)},
+         {column, base::CsvColumn::Presence::required, Range::from(-1e6, 1e6), factor * u.unit}});
     std::vector<double> times, values;
     for (std::size_t k = 0; k < csv.rows; k += base::at(every)) {
       times.push_back(csv.columns[0][k]);
-      values.push_back(smooth > 0.0 ? smoothed(csv.columns[0], csv.columns[1], k, smooth) : csv.columns[1][k]);
+      values.push_back(smooth > 0.0 ? smoothed(csv.columns[0], csv.columns[1], k, smooth)
+                                    : csv.columns[1][k]);
     }
     bool ascending = times.size() >= 2 && times.front() == 0.0;
     for (std::size_t k = 1; k < times.size(); ++k) ascending = ascending && times[k] > times[k - 1];
@@ -116,7 +119,8 @@ CourseMaker read_course(const TomlTable& table, const std::filesystem::path& fol
     const double rate = table.number(u.rate, Range::above(0.0, 1e5), u.unit);
     const double ramp = table.number_or("ramp_s", 0.05, Range::above(0.0, 1e4));
     return [=](double time, double from) {
-      return target(from) == from ? Course::standing(from) : Course::at_rate(from, target(from), time, rate, ramp);
+      return target(from) == from ? Course::standing(from)
+                                  : Course::at_rate(from, target(from), time, rate, ramp);
     };
   }
   const double duration = table.number("duration_s", Range::above(0.0, 1e6));
@@ -183,7 +187,8 @@ DriveMaker read_drive(const TomlTable& table, const std::filesystem::path& folde
     drive.proportional = gain(u.stiffness, as_described.proportional, Range::above(0.0, 1e15));
     drive.derivative = gain(u.damping, as_described.derivative, Range::from(0.0, 1e15));
     drive.rate_share = table.number_or("rate_share", as_described.rate_share, Range::from(0.0, 1.0));
-    drive.limit = table.number_or(u.limit, described ? as_described.limit : drive.limit, Range::above(0.0, 1e15));
+    drive.limit =
+        table.number_or(u.limit, described ? as_described.limit : drive.limit, Range::above(0.0, 1e15));
   }
   if (drive.mode == DriveMode::locked || drive.mode == DriveMode::limp)
     return [drive](double, double angle) {
@@ -211,8 +216,8 @@ std::vector<MotorJoint> read_joints(const Composition& c, const TomlTable& table
   if (found.empty() && !name.empty() && !c.placement.is_excused(name))
     table.fail("joint", known.empty() ? "must be a joint with a motor; there is none"
                                       : "must be a joint, or an arm or a snare for all of theirs: " + known);
-  const bool alike =
-      std::all_of(found.begin(), found.end(), [&](const MotorJoint& j) { return j.slides == found[0].slides; });
+  const bool alike = std::all_of(found.begin(), found.end(),
+                                 [&](const MotorJoint& j) { return j.slides == found[0].slides; });
   const std::string mode = table.text_or("mode", "");
   if (!alike && (mode == "servo" || mode == "course" || mode == "torque"))
     table.fail("joint", "must not name joints that turn and joints that slide at once");

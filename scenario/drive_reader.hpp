@@ -18,6 +18,7 @@ using DriveMaker = std::function<multibody::Drive(double time, double angle)>;
 void read_drives(Composition& composition);
 
 /// The joints that a table names under `joint` (one) or `joints` (of an arm or a snare, all).
-[[nodiscard]] std::vector<MotorJoint> read_joints(const Composition& composition, const base::TomlTable& table);
+[[nodiscard]] std::vector<MotorJoint> read_joints(const Composition& composition,
+                                                  const base::TomlTable& table);
 
 }  // namespace snare::scenario

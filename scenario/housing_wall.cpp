@@ -17,10 +17,11 @@ coupling::MotionWire at_rest_in_wall(DeclaredWire w, PressedRests& known) {
   wall.centre = R.transpose() * (wall.centre - w.from);
   const wire::RodInMotion& rod = w.wire.rod;
   const double radius = 0.5 * w.specification.diameter;
-  const std::string key = fmt::format("{:.9g} {:.9g} {} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}", w.span,
-                                      rod.length, rod.elements, static_cast<int>(rod.formulation), radius,
-                                      rod.properties.bending_stiffness, rod.properties.axial_stiffness, wall.centre.x(),
-                                      wall.centre.y(), wall.inner_radius, wall.foundation.modulus);
+  const std::string key =
+      fmt::format("{:.9g} {:.9g} {} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}", w.span, rod.length,
+                  rod.elements, static_cast<int>(rod.formulation), radius, rod.properties.bending_stiffness,
+                  rod.properties.axial_stiffness, wall.centre.x(), wall.centre.y(), wall.inner_radius,
+                  wall.foundation.modulus);
   auto found = known.find(key);
   if (found == known.end()) {
     wall.centre.z() = 0.0;

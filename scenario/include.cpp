@@ -43,8 +43,9 @@ constexpr PartList part_lists[] = {{"frames", {"frame"}},
                                    {"drives"},
                                    {"sensors", {"relative_to"}}};
 
-constexpr std::string_view frame_keys[] = {"frame",     "other_frame", "from_frame",  "to_frame", "base_frame",
-                                           "tip_frame", "relative_to", "shaft_frame", "body"};
+constexpr std::string_view frame_keys[] = {"frame",       "other_frame", "from_frame",
+                                           "to_frame",    "base_frame",  "tip_frame",
+                                           "relative_to", "shaft_frame", "body"};
 constexpr std::string_view name_keys[] = {"name",       "shape", "other_shape", "wire",
                                           "other_wire", "joint", "snare",       "contact"};
 constexpr std::string_view file_keys[] = {"file", "course_file", "shape_file", "torque_file"};
@@ -93,7 +94,9 @@ class Scope {
     return list != "sensors" || element.find("frame") != nullptr;
   }
 
-  [[nodiscard]] std::string inside(std::string_view name) const { return fmt::format("{}::{}", scope_, name); }
+  [[nodiscard]] std::string inside(std::string_view name) const {
+    return fmt::format("{}::{}", scope_, name);
+  }
 
   void enter(std::string_view key, TomlNode& node) {
     node.part = part_of(node.part);
@@ -106,7 +109,8 @@ class Scope {
       node.text = node.text == "world" ? scope_ : inside(node.text);
     } else if (key == "contact" && node.text.find(on) != std::string::npos) {
       const std::size_t at = node.text.find(on);
-      node.text = fmt::format("{} on {}", inside(node.text.substr(0, at)), inside(node.text.substr(at + on.size())));
+      node.text =
+          fmt::format("{} on {}", inside(node.text.substr(0, at)), inside(node.text.substr(at + on.size())));
     } else if (is_one_of(key, name_keys)) {
       node.text = inside(node.text);
     } else if (is_one_of(key, file_keys)) {
@@ -146,8 +150,9 @@ void check_part(const std::filesystem::path& file, const TomlNode& root) {
     const bool listed = std::any_of(std::begin(part_lists), std::end(part_lists),
                                     [&key](const PartList& list) { return list.name == key; });
     if (listed || key == "schema" || key == "title" || key == "source" || key == "include") continue;
-    problems.push_back({file.string(), entry.node.line, key, entry.node.written,
-                        "belongs to the file that includes this one: a part has lists of what there is, no phases"});
+    problems.push_back(
+        {file.string(), entry.node.line, key, entry.node.written,
+         "belongs to the file that includes this one: a part has lists of what there is, no phases"});
   }
   if (!problems.empty()) throw base::InputError(problems);
 }
@@ -173,7 +178,8 @@ std::vector<Include> read_includes(const std::filesystem::path& file, const Toml
     Include one;
     one.name = table.text("name");
     one.file = table.text("file");
-    for (const char* key : {"frame", "position_mm", "rotation_deg", "rpy_deg"}) static_cast<void>(table.has(key));
+    for (const char* key : {"frame", "position_mm", "rotation_deg", "rpy_deg"})
+      static_cast<void>(table.has(key));
     if (one.name.find("::") != std::string::npos || one.name == "world")
       table.fail("name", "must be a name of its own, without \"::\" and not \"world\"");
     else
@@ -192,7 +198,9 @@ std::vector<Include> read_includes(const std::filesystem::path& file, const Toml
 /// What comes before in a list: the parts' elements before those of the file itself.
 class Merged {
  public:
-  void add(std::string_view list, TomlNode element) { lists_[std::string(list)].push_back(std::move(element)); }
+  void add(std::string_view list, TomlNode element) {
+    lists_[std::string(list)].push_back(std::move(element));
+  }
 
   void into(TomlNode& root) {
     for (auto& [name, elements] : lists_) {
@@ -225,10 +233,12 @@ void include_parts(const std::filesystem::path& file, TomlNode& root, Files& fil
     const std::filesystem::path part = file.parent_path() / one.file;
     std::error_code code;
     const std::filesystem::path whole = std::filesystem::weakly_canonical(part, code);
-    const std::string key = fmt::format("include[{}].file", one.name), value = fmt::format("\"{}\"", one.file);
+    const std::string key = fmt::format("include[{}].file", one.name),
+                      value = fmt::format("\"{}\"", one.file);
     if (std::find(files.open.begin(), files.open.end(), whole) != files.open.end())
       fail(file, one.line, key, value, "must not include itself by way of others");
-    if (++files.parts > most_parts) fail(file, one.line, key, value, fmt::format("is beyond {} parts", most_parts));
+    if (++files.parts > most_parts)
+      fail(file, one.line, key, value, fmt::format("is beyond {} parts", most_parts));
     TomlNode tree = base::parse_toml(part.string(), base::read_text(part, TomlDocument::size_limit));
     check_part(part, tree);
     files.open.push_back(whole);

@@ -19,6 +19,7 @@ namespace snare::scenario {
 ///
 /// Overrides of `include[NAME]` act on the list of parts and are taken out of `overrides`. Throws InputError when a part cannot be
 /// read, is of another schema, has other keys than lists, or includes itself by way of others.
-[[nodiscard]] base::TomlNode read_with_parts(const std::filesystem::path& file, std::vector<base::Override>& overrides);
+[[nodiscard]] base::TomlNode read_with_parts(const std::filesystem::path& file,
+                                             std::vector<base::Override>& overrides);
 
 }  // namespace snare::scenario

@@ -40,11 +40,18 @@ WireStandIn read_wire_stand_in(const TomlTable& table, const wire::WireSpecifica
                                              {"stretched", Model::stretched},
                                              {"rod", Model::rod},
                                              {"rod_linear", Model::rod_linear}};
-  static constexpr Choice<Model> of_listed[] = {
-      {"full", Model::full},        {"quasi_static", Model::quasi_static}, {"stretched", Model::stretched},
-      {"rod", Model::rod},          {"rod_linear", Model::rod_linear},     {"table", Model::push},
-      {"quadratic", Model::push},   {"spring_dashpot", Model::push},       {"power", Model::push},
-      {"step_damped", Model::push}, {"stretched_wire", Model::push},       {"stretched_wire_linear", Model::push}};
+  static constexpr Choice<Model> of_listed[] = {{"full", Model::full},
+                                                {"quasi_static", Model::quasi_static},
+                                                {"stretched", Model::stretched},
+                                                {"rod", Model::rod},
+                                                {"rod_linear", Model::rod_linear},
+                                                {"table", Model::push},
+                                                {"quadratic", Model::push},
+                                                {"spring_dashpot", Model::push},
+                                                {"power", Model::push},
+                                                {"step_damped", Model::push},
+                                                {"stretched_wire", Model::push},
+                                                {"stretched_wire_linear", Model::push}};
   WireStandIn result;
   Model model = Model::full;
   if (table.has("model"))
@@ -71,7 +78,8 @@ WireStandIn read_wire_stand_in(const TomlTable& table, const wire::WireSpecifica
     case Model::rod:
     case Model::rod_linear:
       if (!table.has("rod"))
-        table.fail("rod", "must be a table of the rod's law: half_stiffness_N_m, half_length_mm, half_span_mm");
+        table.fail("rod",
+                   "must be a table of the rod's law: half_stiffness_N_m, half_length_mm, half_span_mm");
       result.law = rod.value_or(LawWire{});
       break;
     case Model::push:

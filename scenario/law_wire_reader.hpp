@@ -20,7 +20,8 @@ struct WireStandIn {
 };
 
 /// Of a wire's table; the tables of laws' numbers are read whatever the model is. beside: of a wire that laws of pushes may stand for.
-[[nodiscard]] WireStandIn read_wire_stand_in(const base::TomlTable& table, const wire::WireSpecification& specification,
+[[nodiscard]] WireStandIn read_wire_stand_in(const base::TomlTable& table,
+                                             const wire::WireSpecification& specification,
                                              const wire::RodDamping& damping,
                                              const std::optional<BesideScenario>& beside);
 /// The models of which a wire's table has the numbers, beside those that need none.

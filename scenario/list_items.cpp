@@ -52,8 +52,9 @@ multibody::Pose read_pose_in_frame(const TomlTable& table) {
   return X;
 }
 
-DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damping, wire::SpatialEnd::Kind mount,
-                            const std::optional<BesideScenario>& beside, std::optional<double> natural_length) {
+DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damping,
+                            wire::SpatialEnd::Kind mount, const std::optional<BesideScenario>& beside,
+                            std::optional<double> natural_length) {
   DeclaredWire w;
   w.specification = read_wire(table, Held::at_its_ends, natural_length);
   for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
@@ -67,7 +68,8 @@ DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damp
   w.law = stand_in.law;
   w.push = stand_in.push;
   if (w.law && w.mounts.give_way())
-    table.table("mount").fail("", "a law stands for the wire and for what its mounts give: only \"kind\" is allowed");
+    table.table("mount").fail(
+        "", "a law stands for the wire and for what its mounts give: only \"kind\" is allowed");
   // Of a round wire it is EI/(1 + nu), of strands that slide not much less. A wire that turns about itself as it likes swings about its chord
   // without a force: it has no equilibrium that could be followed.
   constexpr double least_share = 1e-3;
@@ -75,8 +77,9 @@ DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damp
       w.specification.torsional_stiffness() < least_share * w.specification.bending_stiffness())
     table.fail(
         table.has("torsional_stiffness_Nm2") ? "torsional_stiffness_Nm2" : "bending_stiffness_Nm2",
-        fmt::format("must leave a quasi-static wire a torsional stiffness of at least {:g} of its bending stiffness",
-                    least_share));
+        fmt::format(
+            "must leave a quasi-static wire a torsional stiffness of at least {:g} of its bending stiffness",
+            least_share));
   w.wire.rod.damping = damping;
   w.mounts.set(w.wire.rod.properties);
   w.wire.strength = read_strength(table, w.specification);
@@ -100,7 +103,8 @@ void set_rod(DeclaredWire& w, double span) {
   w.wire.rod = rod;
 }
 
-void stretch(DeclaredWire& w, const TomlTable& table, const std::string& to_key, const std::string& bulge_key) {
+void stretch(DeclaredWire& w, const TomlTable& table, const std::string& to_key,
+             const std::string& bulge_key) {
   w.span = (w.to - w.from).norm();
   if (!(w.span > 0.0)) table.fail(to_key, "must not be where the wire begins");
   check_wire_between_mounts(w.specification, w.span, table);
@@ -112,10 +116,11 @@ void stretch(DeclaredWire& w, const TomlTable& table, const std::string& to_key,
   set_rod(w, w.span);
   if (!w.law || w.law->kind != coupling::LawWire::Kind::push) return;
   if (w.from_carrier != w.to_carrier)
-    table.fail("model",
-               fmt::format("must not be \"{}\" of a wire whose mounts move against each other: the law was taken "
-                           "between mounts that stand still",
-                           table.text("model")));
+    table.fail(
+        "model",
+        fmt::format("must not be \"{}\" of a wire whose mounts move against each other: the law was taken "
+                    "between mounts that stand still",
+                    table.text("model")));
   else if (w.push && w.span > 0.0)
     check_push_model(*w.push, w.wire.rod, w.span, table);
 }
@@ -183,9 +188,11 @@ coupling::MotionContact read_contact_shape(const TomlTable& table, const std::fi
   coupling::MotionContact contact;
   contact.shape = read_shape(table, folder, meshes);
   contact.X_BS = read_pose_in_frame(table);
-  contact.friction = read_friction(table, table.number_or("friction", 0.0, Range::from(0.0, 5.0)), "friction");
+  contact.friction =
+      read_friction(table, table.number_or("friction", 0.0, Range::from(0.0, 5.0)), "friction");
   contact.foundation = read_foundation(table.table("foundation"));
-  static_cast<void>(table.integer_or("points", 4, 1, 100));  // of older files: their number has no limit any more
+  static_cast<void>(
+      table.integer_or("points", 4, 1, 100));  // of older files: their number has no limit any more
   return contact;
 }
 

@@ -28,7 +28,8 @@ struct DeclaredWire {
   coupling::MotionWire wire;
   WireMounts mounts;
   /// Of the ends and of the slack, in the world at the start.
-  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::UnitX(), bulge = Eigen::Vector3d::UnitY();
+  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::UnitX(),
+                  bulge = Eigen::Vector3d::UnitY();
   double span = 0.0;                     ///< [m]
   std::optional<coupling::LawWire> law;  ///< stands for it
   std::optional<PushModel> push;         ///< of a law of pushes
@@ -36,7 +37,8 @@ struct DeclaredWire {
   coupling::MotionCarrier from_carrier, to_carrier;
   std::optional<coupling::RoundWall>
       wall;  ///< of the housing about it, its centre in the world: along its axis where the wire is or not
-  std::optional<coupling::CentreLine> line;  ///< in the world, on which it begins; none: at rest between its mounts
+  std::optional<coupling::CentreLine>
+      line;  ///< in the world, on which it begins; none: at rest between its mounts
 };
 
 /// The wire for which a law stands, in its place but without a shaft.
@@ -52,7 +54,8 @@ struct DeclaredWire {
 void set_rod(DeclaredWire& wire, double span);
 /// Sets place and span, with the direction of the slack, and reports a wire that does not fit there; keys: those of the file
 /// that give the far end and the direction.
-void stretch(DeclaredWire& wire, const base::TomlTable& table, const std::string& to_key, const std::string& bulge_key);
+void stretch(DeclaredWire& wire, const base::TomlTable& table, const std::string& to_key,
+             const std::string& bulge_key);
 /// The wire at rest where its mounts are. Throws InputError when it finds no rest. shape: where it rests in its own frame, chord along x and bulge
 /// to y, (3, vertices) [m]; none: it is looked for.
 [[nodiscard]] coupling::MotionWire at_rest(DeclaredWire wire, const Eigen::Matrix3Xd* shape = nullptr);
@@ -67,7 +70,8 @@ struct DeclaredBody {
 
 /// A shape with friction and foundation, in the frame on which it is, on no body and no wire yet.
 [[nodiscard]] coupling::MotionContact read_contact_shape(const base::TomlTable& table,
-                                                         const std::filesystem::path& folder, std::string& meshes);
+                                                         const std::filesystem::path& folder,
+                                                         std::string& meshes);
 /// Indices of the wires that a shape may touch: those that it names, or all.
 [[nodiscard]] std::vector<int> wires_met(const base::TomlTable& table, const Names& wires, std::size_t count);
 

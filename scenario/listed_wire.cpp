@@ -43,9 +43,10 @@ using EndKinds = std::array<Kind, 2>;
 
 /// Points of the line on which a wire begins, in the world.
 struct StartPoints {
-  std::string file;             ///< as the table names it; empty: straight from `from_mm` to `to_mm`
-  coupling::LinePoints points;  ///< coordinates of the unstretched wire, or before its length is known along the line
-  bool is_material = false;     ///< whether the file has given them
+  std::string file;  ///< as the table names it; empty: straight from `from_mm` to `to_mm`
+  coupling::LinePoints
+      points;  ///< coordinates of the unstretched wire, or before its length is known along the line
+  bool is_material = false;  ///< whether the file has given them
 };
 
 bool is_one_free(const EndKinds& ends) {
@@ -61,7 +62,8 @@ std::string in_mm(const Vector3d& p) {
 }
 
 /// The columns of a file, places and velocities in its own axes.
-std::optional<StartPoints> read_points(const TomlTable& table, const std::string& name, const BesideScenario& beside) {
+std::optional<StartPoints> read_points(const TomlTable& table, const std::string& name,
+                                       const BesideScenario& beside) {
   using Column = base::CsvColumn;
   const Range place = Range::from(-farthest_mm, farthest_mm), speed = Range::from(-1e3, 1e3);
   const auto optional = Column::Presence::optional;
@@ -119,17 +121,19 @@ bool fits_length(DeclaredWire& w, const TomlTable& table, StartPoints& start) {
       w.specification.length = along;
       return true;
     }
-    table.fail("length_mm", fmt::format("must be {}, the last s_mm of {}, or be left out", in_mm(along), start.file));
+    table.fail("length_mm",
+               fmt::format("must be {}, the last s_mm of {}, or be left out", in_mm(along), start.file));
     return false;
   }
   const double stretch = along / given - 1.0;
   if (stretch < least_stretch || stretch > most_stretch) {
     table.fail(
         "length_mm",
-        fmt::format("must be >= {} and <= {}, or be left out: the wire begins on a line of {} mm, of which it may "
-                    "be shorter by {:g} and longer by {:g} %",
-                    in_mm(along / (1.0 + most_stretch)), in_mm(along / (1.0 + least_stretch)), in_mm(along),
-                    100.0 * most_stretch, -100.0 * least_stretch));
+        fmt::format(
+            "must be >= {} and <= {}, or be left out: the wire begins on a line of {} mm, of which it may "
+            "be shorter by {:g} and longer by {:g} %",
+            in_mm(along / (1.0 + most_stretch)), in_mm(along / (1.0 + least_stretch)), in_mm(along),
+            100.0 * most_stretch, -100.0 * least_stretch));
     return false;
   }
   for (double& s : start.points.coordinates) s *= given / along;
@@ -137,36 +141,42 @@ bool fits_length(DeclaredWire& w, const TomlTable& table, StartPoints& start) {
 }
 
 /// Reports stretches and curvatures along the line that the wire cannot have, at the points and between them.
-void check_line(const CentreLine& line, const DeclaredWire& w, const StartPoints& start, const TomlTable& table) {
+void check_line(const CentreLine& line, const DeclaredWire& w, const StartPoints& start,
+                const TomlTable& table) {
   const std::vector<double>& at = start.points.coordinates;
   const double sharpest = 2.0 / w.specification.diameter;
   for (std::size_t i = 0; i < 2 * at.size() - 1; ++i) {
     const double s = 0.5 * (at[i / 2] + at[(i + 1) / 2]);
     const double stretch = line.stretch(s), curvature = line.curvature(s);
     if (stretch < least_stretch || stretch > most_stretch) {
-      table.fail("shape_file",
-                 fmt::format("must stretch the wire by {:g} to {:g} %; it does by {:.3g} % at {} mm from its beginning",
-                             100.0 * least_stretch, 100.0 * most_stretch, 100.0 * stretch, in_mm(s)));
+      table.fail(
+          "shape_file",
+          fmt::format(
+              "must stretch the wire by {:g} to {:g} %; it does by {:.3g} % at {} mm from its beginning",
+              100.0 * least_stretch, 100.0 * most_stretch, 100.0 * stretch, in_mm(s)));
       return;
     }
     if (curvature < sharpest) continue;
-    table.fail("shape_file",
-               fmt::format("must bend by radii above half the diameter, {} mm; its radius is {} mm at {} mm from "
-                           "its beginning",
-                           in_mm(1.0 / sharpest), in_mm(1.0 / curvature), in_mm(s)));
+    table.fail(
+        "shape_file",
+        fmt::format("must bend by radii above half the diameter, {} mm; its radius is {} mm at {} mm from "
+                    "its beginning",
+                    in_mm(1.0 / sharpest), in_mm(1.0 / curvature), in_mm(s)));
     return;
   }
   const wire::MaterialMesh mesh = w.wire.rod.mesh();
   const wire::Controls controls = w.wire.rod.controls();
   Vector3d before = line.direction(0.0);
   for (int e = 0; e < mesh.edges(); ++e) {
-    const Vector3d edge = line.place(mesh.coordinate(e + 1, controls)) - line.place(mesh.coordinate(e, controls));
+    const Vector3d edge =
+        line.place(mesh.coordinate(e + 1, controls)) - line.place(mesh.coordinate(e, controls));
     const double turn = std::atan2(before.cross(edge).norm(), before.dot(edge));
     if (turn > sharpest_turn) {
-      table.fail("elements",
-                 fmt::format("must be more: the wire begins bent by {:.0f} deg between two neighbouring elements, "
-                             "{} mm from its beginning; at most 45",
-                             turn * 180.0 / std::numbers::pi, in_mm(mesh.coordinate(e, controls))));
+      table.fail(
+          "elements",
+          fmt::format("must be more: the wire begins bent by {:.0f} deg between two neighbouring elements, "
+                      "{} mm from its beginning; at most 45",
+                      turn * 180.0 / std::numbers::pi, in_mm(mesh.coordinate(e, controls))));
       return;
     }
     before = edge.normalized();
@@ -184,33 +194,36 @@ void check_end(wire::End end, const DeclaredWire& w, const StartPoints& start, c
   if (!start.file.empty() && table.has(place_key)) {
     const auto given = read_vector(table, place_key, Range::from(-farthest_mm, farthest_mm), mm);
     if (given && base::exceeds((*given - place).norm(), rounding))
-      table.fail(place_key, fmt::format("must be {}, where the line of {} {}, or be left out", in_mm(place), start.file,
-                                        left ? "begins" : "ends"));
+      table.fail(place_key, fmt::format("must be {}, where the line of {} {}, or be left out", in_mm(place),
+                                        start.file, left ? "begins" : "ends"));
   }
   const Kind kind = w.wire.rod.properties.end(end).kind;
   if (kind != Kind::free && line.velocity(s).norm() > 0.0)
-    table.fail("shape_file",
-               fmt::format("must have no velocity at its {} point: that end is held", left ? "first" : "last"));
+    table.fail("shape_file", fmt::format("must have no velocity at its {} point: that end is held",
+                                         left ? "first" : "last"));
 }
 
 /// Reports what cannot stand beside a line on which the wire begins.
 void check_keys(const DeclaredWire& w, const StartPoints& start, const TomlTable& table) {
   const wire::SpatialRodProperties& p = w.wire.rod.properties;
   if (table.has("bulge")) table.fail("bulge", "belongs to a wire that begins at rest between two mounts");
-  if (w.law) table.fail("model", "must be \"full\" or \"quasi_static\" of a wire with shape_file or a free end");
+  if (w.law)
+    table.fail("model", "must be \"full\" or \"quasi_static\" of a wire with shape_file or a free end");
   if (p.right.kind == Kind::free && table.has("to_frame"))
     table.fail("to_frame", "must not be given: that end is free");
   const bool turns =
       is_one_free({p.left.kind, p.right.kind}) && p.left.kind != Kind::clamp && p.right.kind != Kind::clamp;
   if (w.wire.rod.quasi_static && turns)
-    table.fail("model",
-               "must be \"full\" of a wire with a free end that no clamp holds: it has no equilibrium to follow");
+    table.fail(
+        "model",
+        "must be \"full\" of a wire with a free end that no clamp holds: it has no equilibrium to follow");
   if (start.points.velocities.isZero(0.0)) return;
   if (w.wire.rod.quasi_static) table.fail("model", "must be \"full\" of a wire that begins with velocities");
   if (w.from_carrier.kind != coupling::MotionCarrier::Kind::world ||
       w.to_carrier.kind != coupling::MotionCarrier::Kind::world)
-    table.fail("shape_file",
-               "must have no velocities of a wire that an arm or a body carries: it begins with their motion");
+    table.fail(
+        "shape_file",
+        "must have no velocities of a wire that an arm or a body carries: it begins with their motion");
 }
 
 /// Kinds of `ends`; none without it. Between a free end and a pin nothing twists the wire, so that the pin is a ball joint, about which it may
@@ -221,7 +234,8 @@ std::optional<EndKinds> read_ends(const TomlTable& table) {
   if (!table.has("ends")) return std::nullopt;
   if (table.has("mount")) table.fail("mount", "cannot stand beside ends, which say how each end is held");
   const TomlTable each = table.table("ends");
-  EndKinds ends{each.choice("left", kinds).value_or(Kind::clamp), each.choice("right", kinds).value_or(Kind::clamp)};
+  EndKinds ends{each.choice("left", kinds).value_or(Kind::clamp),
+                each.choice("right", kinds).value_or(Kind::clamp)};
   for (Kind& kind : ends) {
     if (kind == Kind::twisting_pin && is_one_free(ends)) kind = Kind::pin;
   }
@@ -273,8 +287,9 @@ void lay_on_line(DeclaredWire& w, const TomlTable& table, StartPoints start, con
   check_keys(w, start, table);
   if (!fits_length(w, table, start)) return;
   if (w.specification.diameter >= thickest * w.specification.length)
-    table.fail("diameter_mm", fmt::format("must be < {}, a fifth of the length of {} mm",
-                                          in_mm(thickest * w.specification.length), in_mm(w.specification.length)));
+    table.fail("diameter_mm",
+               fmt::format("must be < {}, a fifth of the length of {} mm",
+                           in_mm(thickest * w.specification.length), in_mm(w.specification.length)));
   set_rod(w, w.specification.length);
   try {
     w.line.emplace(start.points);
@@ -296,7 +311,8 @@ DeclaredWire read_listed_wire(const TomlTable& table, Names& names, const Placem
   const PlacedFrame to = placement.frame(table, "to_frame").value_or(PlacedFrame{});
   const std::optional<EndKinds> ends = read_ends(table);
   const bool on_a_line = table.has("shape_file") || (ends && is_one_free(*ends));
-  const std::optional<StartPoints> start = on_a_line ? read_start_points(table, beside, from, to) : std::nullopt;
+  const std::optional<StartPoints> start =
+      on_a_line ? read_start_points(table, beside, from, to) : std::nullopt;
   std::optional<double> natural_length;
   if (on_a_line) natural_length = start ? start->points.coordinates.back() : 1.0;
   DeclaredWire w = read_wire_item(table, damping, wire::SpatialEnd::Kind::clamp, beside, natural_length);
@@ -318,7 +334,8 @@ DeclaredWire read_listed_wire(const TomlTable& table, Names& names, const Placem
   place(to, "to_mm", w.to);
   w.from_carrier = from.carrier;
   w.to_carrier = to.carrier;
-  if (table.has("bulge")) w.bulge = read_vector(table, "bulge", Range::from(-1e3, 1e3), 1.0).value_or(w.bulge);
+  if (table.has("bulge"))
+    w.bulge = read_vector(table, "bulge", Range::from(-1e3, 1e3), 1.0).value_or(w.bulge);
   w.bulge = from.X_WF.R * w.bulge;
   stretch(w, table, "to_mm", table.has("bulge") ? "bulge" : "");
   return w;

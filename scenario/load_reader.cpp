@@ -33,7 +33,8 @@ void add(FrameLoad& load, double time, const Vector3d& force, const Vector3d& mo
 void read_pulses(const TomlTable& table, double run, FrameLoad& load) {
   const Vector3d force = read_vector_or_zero(table, "force_N", Range::from(-1e9, 1e9), 1.0);
   const Vector3d moment = read_vector_or_zero(table, "moment_Nm", Range::from(-1e9, 1e9), 1.0);
-  if (!table.has("force_N") && !table.has("moment_Nm")) table.fail("force_N", "must be given, or moment_Nm, or file");
+  if (!table.has("force_N") && !table.has("moment_Nm"))
+    table.fail("force_N", "must be given, or moment_Nm, or file");
   const double begin = table.number_or("begin_s", 0.0, Range::from(0.0, 1e6));
   const double duration = table.number_or("duration_s", std::max(run - begin, 1e-9), durations);
   const double ramp = table.number_or("ramp_s", 0.0, Range::from(0.0, 1e6));
@@ -47,7 +48,8 @@ void read_pulses(const TomlTable& table, double run, FrameLoad& load) {
   if (base::exceeds(duration, every, {run, begin})) table.fail("every_s", "must be at least duration_s");
   static constexpr base::Choice<bool> shapes[] = {{"flat", false}, {"half_sine", true}};
   if (table.has("shape")) load.half_sines = table.choice("shape", shapes).value_or(false);
-  if (load.half_sines && table.has("ramp_s")) table.fail("ramp_s", "cannot stand beside shape = \"half_sine\"");
+  if (load.half_sines && table.has("ramp_s"))
+    table.fail("ramp_s", "cannot stand beside shape = \"half_sine\"");
   const Vector3d none = Vector3d::Zero();
   for (int k = 0; k < count; ++k) {
     if (load.half_sines) {  // between the first two times; none up to the next pulse
@@ -65,7 +67,8 @@ void read_pulses(const TomlTable& table, double run, FrameLoad& load) {
 
 /// Straight between the lines of a CSV file.
 void read_course(Composition& c, const TomlTable& table, FrameLoad& load) {
-  for (const char* key : {"force_N", "moment_Nm", "begin_s", "duration_s", "ramp_s", "pulses", "every_s", "shape"}) {
+  for (const char* key :
+       {"force_N", "moment_Nm", "begin_s", "duration_s", "ramp_s", "pulses", "every_s", "shape"}) {
     if (table.has(key)) table.fail(key, "cannot stand beside file, which says all");
   }
   const std::string name = table.text("file");
@@ -82,10 +85,12 @@ void read_course(Composition& c, const TomlTable& table, FrameLoad& load) {
     bool any = false;
     for (std::size_t k = 1; k < csv.columns.size(); ++k) any = any || !csv.columns[k].empty();
     if (!any)
-      table.fail("file", fmt::format("{} must have one of the columns fx_N, fy_N, fz_N, mx_Nm, my_Nm, mz_Nm", name));
+      table.fail("file",
+                 fmt::format("{} must have one of the columns fx_N, fy_N, fz_N, mx_Nm, my_Nm, mz_Nm", name));
     for (std::size_t i = 0; i < csv.rows; ++i) {
       std::array<double, 6> w{};
-      for (std::size_t k = 0; k < w.size(); ++k) w[k] = csv.columns[k + 1].empty() ? 0.0 : csv.columns[k + 1][i];
+      for (std::size_t k = 0; k < w.size(); ++k)
+        w[k] = csv.columns[k + 1].empty() ? 0.0 : csv.columns[k + 1][i];
       add(load, csv.columns[0][i], {w[0], w[1], w[2]}, {w[3], w[4], w[5]});
     }
   } catch (const base::InputError& error) {

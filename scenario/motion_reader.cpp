@@ -49,7 +49,8 @@ multibody::RigidBodyProperties read_body_properties(const TomlTable& table) {
     properties.inertia = inertia->asDiagonal();
     const double largest = inertia->maxCoeff();
     if (base::exceeds(largest, inertia->sum() - largest))
-      table.fail("inertia_kg_m2", "must satisfy the triangle inequality: none larger than the other two together");
+      table.fail("inertia_kg_m2",
+                 "must satisfy the triangle inequality: none larger than the other two together");
   }
   return properties;
 }
@@ -63,7 +64,8 @@ void read_motion_options(const TomlTable& root, coupling::MotionOptions& o) {
   const auto tolerance = [&solver](std::string_view key, double& value, double most) {
     value = solver.number_or(key, value, Range::above(0.0, most));
   };
-  o.relative_tolerance = solver.number_or("relative_tolerance", o.relative_tolerance, Range::from(1e-10, 1e-2));
+  o.relative_tolerance =
+      solver.number_or("relative_tolerance", o.relative_tolerance, Range::from(1e-10, 1e-2));
   tolerance("position_tolerance_m", o.position_tolerance, 1e-3);
   tolerance("velocity_tolerance_m_s", o.velocity_tolerance, 1.0);
   tolerance("quasi_static_velocity_tolerance_m_s", o.quasi_static_velocity_tolerance, 1.0);
@@ -125,22 +127,23 @@ coupling::WireStrength read_strength(const TomlTable& table, const wire::WireSpe
 }
 
 wire::Formulation read_formulation(const TomlTable& table) {
-  static constexpr Choice<wire::Formulation> formulations[] = {{"vertices", wire::Formulation::vertices},
-                                                               {"higher_order", wire::Formulation::higher_order}};
+  static constexpr Choice<wire::Formulation> formulations[] = {
+      {"vertices", wire::Formulation::vertices}, {"higher_order", wire::Formulation::higher_order}};
   if (!table.has("formulation")) return wire::Formulation::higher_order;
   return table.choice("formulation", formulations).value_or(wire::Formulation::higher_order);
 }
 
 coupling::MotionFriction read_friction(const TomlTable& table, double dynamic, std::string_view dynamic_key) {
-  static constexpr Choice<coupling::ContactFriction> laws[] = {{"stick_slip", coupling::ContactFriction::stick_slip},
-                                                               {"smooth", coupling::ContactFriction::smooth}};
+  static constexpr Choice<coupling::ContactFriction> laws[] = {
+      {"stick_slip", coupling::ContactFriction::stick_slip}, {"smooth", coupling::ContactFriction::smooth}};
   coupling::MotionFriction f;
   if (table.has("law")) f.law = table.choice("law", laws).value_or(f.law);
   f.dynamic_coefficient = dynamic;
   f.static_coefficient = table.number_or("static_friction", dynamic, Range::from(0.0, 5.0));
   f.static_speed = table.number_or("static_speed_m_s", 0.01, Range::from(0.0, 10.0));
   f.dynamic_speed = table.number_or("dynamic_speed_m_s", 1.0, Range::from(0.0, 100.0));
-  f.bristle_displacement = table.number_or("bristle_displacement_m", f.bristle_displacement, Range::from(1e-10, 1e-2));
+  f.bristle_displacement =
+      table.number_or("bristle_displacement_m", f.bristle_displacement, Range::from(1e-10, 1e-2));
   f.bristle_time = table.number_or("bristle_time_s", f.bristle_time, Range::from(1e-9, 1.0));
   const bool at_once =
       f.law == coupling::ContactFriction::stick_slip && f.static_speed == 0.0 && f.dynamic_speed == 0.0;

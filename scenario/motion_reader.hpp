@@ -25,8 +25,8 @@ inline constexpr double farthest_mm = 1e5;  ///< of anything from anything [mm]
 [[nodiscard]] std::optional<Eigen::Vector3d> read_vector(const base::TomlTable& table, std::string_view key,
                                                          base::Range range, double unit);
 /// The same, zero where the key is missing. In SI likewise.
-[[nodiscard]] Eigen::Vector3d read_vector_or_zero(const base::TomlTable& table, std::string_view key, base::Range range,
-                                                  double unit);
+[[nodiscard]] Eigen::Vector3d read_vector_or_zero(const base::TomlTable& table, std::string_view key,
+                                                  base::Range range, double unit);
 
 /// Rotation matrix R by an axis times an angle in degrees under a key; the identity where it is missing.
 [[nodiscard]] Eigen::Matrix3d read_rotation_vector(const base::TomlTable& table, std::string_view key);
@@ -54,7 +54,8 @@ void read_motion_options(const base::TomlTable& root, coupling::MotionOptions& o
 /// `[foundation]` between wire and shape.
 [[nodiscard]] coupling::ElasticFoundation read_foundation(const base::TomlTable& table);
 /// `strength_N` and `at_strength` of a wire.
-[[nodiscard]] coupling::WireStrength read_strength(const base::TomlTable& table, const wire::WireSpecification& wire);
+[[nodiscard]] coupling::WireStrength read_strength(const base::TomlTable& table,
+                                                   const wire::WireSpecification& wire);
 /// `formulation` of a wire: how its bending is discretised.
 [[nodiscard]] wire::Formulation read_formulation(const base::TomlTable& table);
 

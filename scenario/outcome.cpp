@@ -19,7 +19,8 @@ struct Crossing {
   Vector3d place, velocity;
 };
 
-std::optional<Crossing> crossing(const FrameTrack::State& shaft, const FrameTrack::State& snare, double height) {
+std::optional<Crossing> crossing(const FrameTrack::State& shaft, const FrameTrack::State& snare,
+                                 double height) {
   const multibody::Pose X_SF = snare.X_WF.inverse() * shaft.X_WF;
   const Vector3d axis = X_SF.R.col(2);
   if (std::abs(axis.z()) < 0.1) return std::nullopt;

@@ -94,7 +94,8 @@ void read_sensed(const TomlTable& table, Sensed& sensed, std::vector<coupling::S
     if (!name.empty()) table.fail("sensor", sensed.requirement());
     return;
   }
-  if (table.has("axis") && sensor->components() == 1) table.fail("axis", "only of a sensor that reads three numbers");
+  if (table.has("axis") && sensor->components() == 1)
+    table.fail("axis", "only of a sensor that reads three numbers");
   coupling::SensedBound b;
   b.sensed = sensed.index(*sensor);
   b.component = sensor->components() == 1 ? 0 : axis.value_or(-1);
@@ -106,7 +107,8 @@ void read_sensed(const TomlTable& table, Sensed& sensed, std::vector<coupling::S
   bounds.push_back(b);
 }
 
-void read_condition(const Composition& c, const TomlTable& table, Sensed& sensed, coupling::MotionPhase& phase) {
+void read_condition(const Composition& c, const TomlTable& table, Sensed& sensed,
+                    coupling::MotionPhase& phase) {
   std::vector<SignalBound>& bounds = phase.bounds;
   const Quantity* asked = nullptr;
   std::string known;
@@ -159,7 +161,8 @@ void read_condition(const Composition& c, const TomlTable& table, Sensed& sensed
   if (b.above == table.has(asked->below))
     table.fail(b.above ? asked->below : asked->above,
                fmt::format("must have either {} or {}", asked->above, asked->below));
-  b.bound = table.number_or(b.above ? asked->above : asked->below, 0.0, Range::from(-1e12, 1e12), asked->unit);
+  b.bound =
+      table.number_or(b.above ? asked->above : asked->below, 0.0, Range::from(-1e12, 1e12), asked->unit);
   bounds.push_back(b);
 }
 
@@ -174,8 +177,10 @@ void read_phases(Composition& c, const std::vector<Sensor>& sensors) {
     phase.name = names.take(table);
     phase.not_before = table.number_or("at_s", 0.0, Range::from(0.0, 1e6));
     if (table.has("at_s") && phase.not_before < last)
-      table.fail("at_s",
-                 fmt::format("must not be before that of an earlier phase, {:.9g}: phases begin in their order", last));
+      table.fail(
+          "at_s",
+          fmt::format("must not be before that of an earlier phase, {:.9g}: phases begin in their order",
+                      last));
     last = std::max(last, phase.not_before);
     phase.after_previous = table.number_or("after_s", 0.0, Range::from(0.0, 1e6));
     for (const TomlTable& condition : table.tables("when")) read_condition(c, condition, sensed, phase);

@@ -48,10 +48,10 @@ void Placement::resolve() {
   }
   for (const Waiting& w : waiting_) {
     if (is_excused(w.on)) continue;
-    const bool waits =
-        std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& other) { return brings(other, w.on); });
-    w.table.fail(w.key,
-                 waits ? "must not stand on itself by way of others, nor on a frame that they lack" : requirement());
+    const bool waits = std::any_of(waiting_.begin(), waiting_.end(),
+                                   [&](const Waiting& other) { return brings(other, w.on); });
+    w.table.fail(w.key, waits ? "must not stand on itself by way of others, nor on a frame that they lack"
+                              : requirement());
   }
   // So that what names them is not reported as well.
   while (!waiting_.empty()) {

@@ -33,13 +33,14 @@ struct NamedLaw {
   std::string_view model, table;
   std::optional<LawModel> law;
 };
-constexpr NamedLaw named_laws[] = {{"table", "table", {}},
-                                   {"quadratic", "quadratic", LawModel::quadratic},
-                                   {"spring_dashpot", "spring_dashpot", LawModel::spring_dashpot},
-                                   {"power", "power", LawModel::power},
-                                   {"step_damped", "step_damped", LawModel::step_damped},
-                                   {"stretched_wire", "stretched_wire", LawModel::stretched_wire},
-                                   {"stretched_wire_linear", "stretched_wire", LawModel::stretched_wire_linear}};
+constexpr NamedLaw named_laws[] = {
+    {"table", "table", {}},
+    {"quadratic", "quadratic", LawModel::quadratic},
+    {"spring_dashpot", "spring_dashpot", LawModel::spring_dashpot},
+    {"power", "power", LawModel::power},
+    {"step_damped", "step_damped", LawModel::step_damped},
+    {"stretched_wire", "stretched_wire", LawModel::stretched_wire},
+    {"stretched_wire_linear", "stretched_wire", LawModel::stretched_wire_linear}};
 
 double read_side(const TomlTable& table) {
   static constexpr Choice<double> sides[] = {{"outward", 1.0}, {"inward", -1.0}};
@@ -81,7 +82,8 @@ const std::vector<PushModelName>& push_models() {
   return names;
 }
 
-std::optional<PushModel> read_push_model(const TomlTable& wire, std::string_view model, const BesideScenario& beside) {
+std::optional<PushModel> read_push_model(const TomlTable& wire, std::string_view model,
+                                         const BesideScenario& beside) {
   const NamedLaw& kind = *std::ranges::find(named_laws, model, &NamedLaw::model);
   const TomlTable table = wire.table(kind.table);
   PushModel push;
@@ -108,15 +110,18 @@ void read_numbers(const TomlTable& wire, std::string_view model) {
   static_cast<void>(read_contact_law(table, *kind.law));
 }
 
-void check_push_model(const PushModel& push, const wire::RodInMotion& rod, double span, const TomlTable& wire) {
+void check_push_model(const PushModel& push, const wire::RodInMotion& rod, double span,
+                      const TomlTable& wire) {
   if (push.law) {
-    if (const auto problem = position_problem(push.position, span)) wire.fail("model", "position_mm " + *problem);
+    if (const auto problem = position_problem(push.position, span))
+      wire.fail("model", "position_mm " + *problem);
     return;
   }
   const auto same = [&](const char* what, double value, double of_table, double unit, const char* name) {
     if (std::abs(value - of_table) <= same_wire * std::abs(of_table)) return;
-    wire.fail("table", fmt::format("must have been distilled from this wire: its {} is {:.6g} {}, here {:.6g} {}", what,
-                                   of_table / unit, name, value / unit, name));
+    wire.fail("table",
+              fmt::format("must have been distilled from this wire: its {} is {:.6g} {}, here {:.6g} {}",
+                          what, of_table / unit, name, value / unit, name));
   };
   const DistilledLaw& law = *push.table;
   same("span", span, law.wire.span, mm, "mm");
@@ -124,8 +129,9 @@ void check_push_model(const PushModel& push, const wire::RodInMotion& rod, doubl
   same("axial stiffness", rod.properties.axial_stiffness, law.wire.axial_stiffness, 1.0, "N");
   const double slack = rod.length - span, margin = same_wire * span;
   if (slack < law.slack[0] - margin || slack > law.slack[1] + margin)
-    wire.fail("table", fmt::format("must have this wire's slack of {:.6g} mm in its range, {:.6g} to {:.6g} mm",
-                                   slack / mm, law.slack[0] / mm, law.slack[1] / mm));
+    wire.fail("table",
+              fmt::format("must have this wire's slack of {:.6g} mm in its range, {:.6g} to {:.6g} mm",
+                          slack / mm, law.slack[0] / mm, law.slack[1] / mm));
 }
 
 numerics::HermiteCurve first_touch(const Eigen::Matrix3Xd& rest, double radius, double side) {
@@ -133,7 +139,8 @@ numerics::HermiteCurve first_touch(const Eigen::Matrix3Xd& rest, double radius, 
   for (Eigen::Index k = 0; k < rest.cols(); ++k) {
     if (k > 0 && !(rest(0, k) > x.back()))
       throw base::InputError(
-          {"", 0, "wire", "", "must lie over its chord at rest for a law to stand for it: it has too much slack"});
+          {"", 0, "wire", "",
+           "must lie over its chord at rest for a law to stand for it: it has too much slack"});
     x.push_back(rest(0, k));
     height.push_back(side * rest(1, k));
   }
@@ -147,7 +154,8 @@ numerics::HermiteCurve first_touch(const Eigen::Matrix3Xd& rest, double radius, 
     double low = std::max(0.0, s - radius), high = std::min(span, s + radius);
     for (int k = 0; k < 60; ++k) {
       const double middle = 0.5 * (low + high), from = middle - s;
-      const double rise = wire.slope(middle) + from / std::sqrt(std::max(radius * radius - from * from, 1e-300));
+      const double rise =
+          wire.slope(middle) + from / std::sqrt(std::max(radius * radius - from * from, 1e-300));
       (rise < 0.0 ? low : high) = middle;
     }
     const double at = 0.5 * (low + high), from = at - s;

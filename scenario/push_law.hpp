@@ -43,7 +43,8 @@ struct BesideScenario {
 /// Reports what is wrong in a table of such numbers that stands beside another model.
 void read_numbers(const base::TomlTable& wire, std::string_view model);
 /// Reports what does not fit a wire: its span [m], which it is between mounts that stand still to each other.
-void check_push_model(const PushModel& push, const wire::RodInMotion& rod, double span, const base::TomlTable& wire);
+void check_push_model(const PushModel& push, const wire::RodInMotion& rod, double span,
+                      const base::TomlTable& wire);
 
 /// Where a disc of a radius first touches a wire at rest, by its place s along the chord [m]: the height along the push [m].
 ///   y(s) = min over x of w(x) - sqrt(R^2 - (x - s)^2),  w the wire's height

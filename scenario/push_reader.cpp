@@ -47,7 +47,8 @@ namespace {
 /// The modulus, or where it is left out the one with which a solid round section has the declared stiffness, by which
 /// strains become stresses. It may be left out where every stiffness that is needed is declared.
 void read_modulus(const TomlTable& table, Held held, wire::WireSpecification& wire) {
-  const bool known = wire.bending_stiffness_override && (wire.axial_stiffness_override || held == Held::on_supports);
+  const bool known =
+      wire.bending_stiffness_override && (wire.axial_stiffness_override || held == Held::on_supports);
   const auto ratio = Range::above(-1.0, 0.5);
   if (table.has("poisson_ratio") || !known) wire.poisson_ratio = table.number("poisson_ratio", ratio);
   if (table.has("youngs_modulus_GPa") || !known) {
@@ -55,9 +56,9 @@ void read_modulus(const TomlTable& table, Held held, wire::WireSpecification& wi
     return;
   }
   const double area = 0.25 * std::numbers::pi * wire.diameter * wire.diameter;
-  wire.youngs_modulus = wire.axial_stiffness_override
-                            ? *wire.axial_stiffness_override / area
-                            : *wire.bending_stiffness_override / (area * wire.diameter * wire.diameter / 16.0);
+  wire.youngs_modulus = wire.axial_stiffness_override ? *wire.axial_stiffness_override / area
+                                                      : *wire.bending_stiffness_override /
+                                                            (area * wire.diameter * wire.diameter / 16.0);
 }
 
 }  // namespace
@@ -74,7 +75,8 @@ wire::WireSpecification read_wire(const TomlTable& table, Held held, std::option
   wire.density = table.number("density_kg_m3", Range::above(0.0, 1e5));
   const Range bending = Range::from(smallest_bending_stiffness, 1e9);
   wire.bending_stiffness_override = table.optional_number("bending_stiffness_Nm2", bending);
-  wire.axial_stiffness_override = table.optional_number("axial_stiffness_N", Range::above(0.0, largest_stiffness));
+  wire.axial_stiffness_override =
+      table.optional_number("axial_stiffness_N", Range::above(0.0, largest_stiffness));
   wire.torsional_stiffness_override = table.optional_number("torsional_stiffness_Nm2", bending);
   read_modulus(table, held, wire);
   wire.natural_curvature = table.number_or("natural_curvature_1_m", 0.0, Range::from(-1e4, 1e4));
@@ -102,17 +104,18 @@ wire::WireSpecification read_wire(const TomlTable& table, Held held, std::option
     table.fail("diameter_mm", fmt::format("gives a bending stiffness of {:.3g} N m^2, must be >= {}",
                                           wire.bending_stiffness(), smallest_bending_stiffness));
   else if (wire.axial_stiffness() < smallest_axial_stiffness)
-    table.fail("diameter_mm", fmt::format("gives an axial stiffness of {:.3g} N, must be >= {}", wire.axial_stiffness(),
-                                          smallest_axial_stiffness));
+    table.fail("diameter_mm", fmt::format("gives an axial stiffness of {:.3g} N, must be >= {}",
+                                          wire.axial_stiffness(), smallest_axial_stiffness));
   else if (wire.mass_per_length() < smallest_mass)
-    table.fail("density_kg_m3",
-               fmt::format("gives a mass of {:.3g} kg/m, must be >= {}", wire.mass_per_length(), smallest_mass));
+    table.fail("density_kg_m3", fmt::format("gives a mass of {:.3g} kg/m, must be >= {}",
+                                            wire.mass_per_length(), smallest_mass));
   return wire;
 }
 
 std::array<const char*, 7> keys_of_giving_mounts() {
-  return {"slip_tension_N",       "rotational_stiffness_Nm_rad", "translational_stiffness_N_m", own_rotational_keys[0],
-          own_rotational_keys[1], own_translational_keys[0],     own_translational_keys[1]};
+  return {"slip_tension_N",         "rotational_stiffness_Nm_rad", "translational_stiffness_N_m",
+          own_rotational_keys[0],   own_rotational_keys[1],        own_translational_keys[0],
+          own_translational_keys[1]};
 }
 
 namespace {
@@ -160,7 +163,8 @@ wire::MountSpecification read_mount(const TomlTable& table) {
       refuse(key, "\"clamped\"");
   }
   if (*kind == wire::MountKind::supports) {
-    for (const char* key : {"translational_stiffness_N_m", own_translational_keys[0], own_translational_keys[1]})
+    for (const char* key :
+         {"translational_stiffness_N_m", own_translational_keys[0], own_translational_keys[1]})
       refuse(key, "\"clamped\" or \"pinned\"");
     refuse("slip_tension_N", "\"clamped\" or \"pinned\"");
   }
@@ -169,8 +173,8 @@ wire::MountSpecification read_mount(const TomlTable& table) {
 
 coupling::PusherSpecification read_pusher(const TomlTable& table) {
   static constexpr Choice<bool> shapes[] = {{"cylinder", true}};  // the only one; a knife edge has radius 0
-  static constexpr Choice<coupling::PushDirection> directions[] = {{"outward", coupling::PushDirection::outward},
-                                                                   {"inward", coupling::PushDirection::inward}};
+  static constexpr Choice<coupling::PushDirection> directions[] = {
+      {"outward", coupling::PushDirection::outward}, {"inward", coupling::PushDirection::inward}};
   coupling::PusherSpecification pusher;
   static_cast<void>(table.choice("shape", shapes));
   pusher.radius = table.number("radius_mm", Range::from(0.0, 100.0), mm);
@@ -197,15 +201,16 @@ std::array<double, 3> read_gravity(const TomlTable& table) {
 }
 
 // What no key can say alone. A number that was refused is NaN, and no comparison with it holds.
-void check_length_and_diameter(const wire::WireSpecification& wire, double span, bool rests, const TomlTable& table) {
+void check_length_and_diameter(const wire::WireSpecification& wire, double span, bool rests,
+                               const TomlTable& table) {
   const double shortest = (rests ? 1.0 : shortest_length) * span;
   if (base::exceeds(shortest, wire.length))
     table.fail("length_mm", rests ? fmt::format("must be >= {}, the span of the supports", in_mm(span))
                                   : fmt::format("must be >= {}, {:g} % of the span of {} mm", in_mm(shortest),
                                                 100.0 * shortest_length, in_mm(span)));
   if (wire.diameter >= thickest_wire * span)
-    table.fail("diameter_mm",
-               fmt::format("must be < {}, a fifth of the span of {} mm", in_mm(thickest_wire * span), in_mm(span)));
+    table.fail("diameter_mm", fmt::format("must be < {}, a fifth of the span of {} mm",
+                                          in_mm(thickest_wire * span), in_mm(span)));
 }
 
 }  // namespace
@@ -217,9 +222,10 @@ void check_wire_between_mounts(const wire::WireSpecification& wire, double span,
 coupling::PushProblem read_wire_and_mounts(const PushTables& tables) {
   coupling::PushProblem test;
   test.mount = read_mount(tables.mount);
-  test.wire =
-      read_wire(tables.wire, test.mount.kind == wire::MountKind::supports ? Held::on_supports : Held::at_its_ends);
-  check_length_and_diameter(test.wire, test.mount.span, test.mount.kind == wire::MountKind::supports, tables.wire);
+  test.wire = read_wire(tables.wire,
+                        test.mount.kind == wire::MountKind::supports ? Held::on_supports : Held::at_its_ends);
+  check_length_and_diameter(test.wire, test.mount.span, test.mount.kind == wire::MountKind::supports,
+                            tables.wire);
   return test;
 }
 
@@ -232,17 +238,20 @@ coupling::PushProblem read_push_problem(const PushTables& tables) {
 }
 
 PushTables push_tables(const TomlTable& root) {
-  return {root.table("wire"), root.table("mount"), root.table("pusher"), root.table("bulge"), root.table("gravity")};
+  return {root.table("wire"), root.table("mount"), root.table("pusher"), root.table("bulge"),
+          root.table("gravity")};
 }
 
 void require_simple_motion(const PushTables& tables, const coupling::PushProblem& test) {
   if (test.mount.kind == wire::MountKind::supports)
-    tables.mount.fail("kind", "must be \"clamped\" or \"pinned\": a wire on supports is not computed in motion");
+    tables.mount.fail("kind",
+                      "must be \"clamped\" or \"pinned\": a wire on supports is not computed in motion");
   for (const char* key : keys_of_giving_mounts()) {
     if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
   }
   for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
-    if (tables.wire.has(key)) tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
+    if (tables.wire.has(key))
+      tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
   }
   if (tables.wire.has("strand_slip_breadth"))
     tables.wire.fail("strand_slip_breadth", "all strands slide at one curvature in motion");
@@ -250,9 +259,10 @@ void require_simple_motion(const PushTables& tables, const coupling::PushProblem
 
 std::optional<std::string> position_problem(double position, double span) {
   const double margin = mount_margin * span;
-  if (!base::exceeds(margin, position) && !base::exceeds(position, span - margin, {span})) return std::nullopt;
-  return fmt::format("must be >= {} and <= {}: inside the span of {} mm, {:g} % of it from each mount", in_mm(margin),
-                     in_mm(span - margin), in_mm(span), 100.0 * mount_margin);
+  if (!base::exceeds(margin, position) && !base::exceeds(position, span - margin, {span}))
+    return std::nullopt;
+  return fmt::format("must be >= {} and <= {}: inside the span of {} mm, {:g} % of it from each mount",
+                     in_mm(margin), in_mm(span - margin), in_mm(span), 100.0 * mount_margin);
 }
 
 }  // namespace snare::scenario

@@ -39,7 +39,8 @@ enum class Held { at_its_ends, on_supports };
 [[nodiscard]] wire::WireSpecification read_wire(const base::TomlTable& table, Held held = Held::at_its_ends,
                                                 std::optional<double> natural_length = {});
 /// Reports what is wrong with a wire between mounts `span` [m] apart, neither of them a support.
-void check_wire_between_mounts(const wire::WireSpecification& wire, double span, const base::TomlTable& table);
+void check_wire_between_mounts(const wire::WireSpecification& wire, double span,
+                               const base::TomlTable& table);
 /// The same of wire and mounts alone.
 [[nodiscard]] coupling::PushProblem read_wire_and_mounts(const PushTables& tables);
 

@@ -137,7 +137,8 @@ std::string pusher_table(const coupling::PusherSpecification& pusher) {
 }  // namespace
 
 std::string push_tables_text(const coupling::PushProblem& push) {
-  std::string text = wire_table(push.wire) + '\n' + mount_table(push.mount) + '\n' + pusher_table(push.pusher);
+  std::string text =
+      wire_table(push.wire) + '\n' + mount_table(push.mount) + '\n' + pusher_table(push.pusher);
   const coupling::BulgeSpecification usual;
   if (push.bulge.mode != usual.mode || push.bulge.plane != usual.plane) {
     text += '\n' + Table("bulge")
@@ -147,9 +148,10 @@ std::string push_tables_text(const coupling::PushProblem& push) {
   }
   const auto& g = push.gravity;
   if (g[0] != 0.0 || g[1] != 0.0 || g[2] != 0.0) {
-    text += '\n' + Table("gravity")
-                       .line(fmt::format("vector_m_s2 = [{}, {}, {}]", decimal(g[0]), decimal(g[1]), decimal(g[2])))
-                       .text();
+    text += '\n' +
+            Table("gravity")
+                .line(fmt::format("vector_m_s2 = [{}, {}, {}]", decimal(g[0]), decimal(g[1]), decimal(g[2])))
+                .text();
   }
   return text;
 }

@@ -17,7 +17,9 @@ namespace {
 
 /// Sign of the force of a contact on a body over that which results give; nothing where it is of others.
 std::optional<double> sign_on(const coupling::Motion& motion, int contact, int body) {
-  const auto is_it = [body](const MotionCarrier& c) { return c.kind == MotionCarrier::Kind::body && c.index == body; };
+  const auto is_it = [body](const MotionCarrier& c) {
+    return c.kind == MotionCarrier::Kind::body && c.index == body;
+  };
   const auto [kind, index] = motion.contact_place(at(contact));
   switch (kind) {
     case coupling::ContactKind::shape:
@@ -42,7 +44,8 @@ void read_robots(Composition& c) {
     robot.mass = table.number("mass_kg", Range::above(0.0, 1e9));
     robot.delay = table.number("delay_s", Range::above(0.0, 10.0));
     const std::vector<std::string> names = table.texts_or_none("contacts");
-    if (names.empty()) table.fail("contacts", "must name the contacts whose force on the body the robot measures");
+    if (names.empty())
+      table.fail("contacts", "must name the contacts whose force on the body the robot measures");
     const std::optional<int> index = c.body_names.find(body.text("name"));
     if (!body.boolean_or("driven", false)) body.fail("robot", "only of a body with driven = true");
     for (const std::string& name : names) {

@@ -41,11 +41,12 @@ std::string way_from_older(const TomlNode& root) {
   const bool lists = std::ranges::any_of(std::initializer_list<std::string_view>{"wires", "bodies", "shapes"},
                                          [&root](std::string_view key) { return root.find(key) != nullptr; });
   if (kind == "contact" && lists)
-    return fmt::format("is read no more: change the line to schema = \"{}\" and take kind out", composed_schema);
+    return fmt::format("is read no more: change the line to schema = \"{}\" and take kind out",
+                       composed_schema);
   for (const Way& way : ways) {
     if (way.kind == kind)
-      return fmt::format("is read no more: {} of \"{}\" say what kind = \"{}\" said: {}", way.lists, composed_schema,
-                         kind, page);
+      return fmt::format("is read no more: {} of \"{}\" say what kind = \"{}\" said: {}", way.lists,
+                         composed_schema, kind, page);
   }
   return fmt::format("is read no more: must be \"{}\": {}", composed_schema, page);
 }
@@ -55,7 +56,8 @@ void require_lists(const std::filesystem::path& file, const TomlNode& root) {
   const std::string schema = text_of(root, "schema");
   const auto fail = [&](const char* key, const std::string& value, std::string requirement) {
     const TomlNode* node = root.find(key);
-    throw base::InputError({file.string(), node != nullptr ? node->line : 0, key, value, std::move(requirement)});
+    throw base::InputError(
+        {file.string(), node != nullptr ? node->line : 0, key, value, std::move(requirement)});
   };
   if (schema == older_schema) fail("schema", fmt::format("\"{}\"", schema), way_from_older(root));
   if (schema != composed_schema) fail("schema", schema, fmt::format("must be \"{}\"", composed_schema));
@@ -67,7 +69,8 @@ void require_lists(const std::filesystem::path& file, const TomlNode& root) {
 }  // namespace
 
 Scenario read_scenario(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
-  std::vector<base::Override> own = overrides;  // less those of the list of parts, and those of the arms' files
+  std::vector<base::Override> own =
+      overrides;  // less those of the list of parts, and those of the arms' files
   const TomlNode written = read_with_parts(file, own);
   const ArmOverrides arms = take_arm_overrides(own);
   TomlNode looked_at = written;

@@ -12,12 +12,13 @@ using base::TomlTable;
 
 std::vector<Sensor> read_sensors(const Composition& c, double output_interval) {
   using Kind = Sensor::Kind;
-  static constexpr Choice<Kind> kinds[] = {{"position", Kind::position},         {"attitude", Kind::attitude},
-                                           {"velocity", Kind::velocity},         {"rate", Kind::rate},
-                                           {"joint_angle", Kind::joint_angle},   {"motor_angle", Kind::motor_angle},
-                                           {"motor_rate", Kind::motor_rate},     {"joint_torque", Kind::joint_torque},
-                                           {"drive_torque", Kind::drive_torque}, {"contact_force", Kind::contact_force},
-                                           {"tension", Kind::tension},           {"mount_force", Kind::mount_force}};
+  static constexpr Choice<Kind> kinds[] = {
+      {"position", Kind::position},         {"attitude", Kind::attitude},
+      {"velocity", Kind::velocity},         {"rate", Kind::rate},
+      {"joint_angle", Kind::joint_angle},   {"motor_angle", Kind::motor_angle},
+      {"motor_rate", Kind::motor_rate},     {"joint_torque", Kind::joint_torque},
+      {"drive_torque", Kind::drive_torque}, {"contact_force", Kind::contact_force},
+      {"tension", Kind::tension},           {"mount_force", Kind::mount_force}};
   std::vector<Sensor> sensors;
   Names names("sensor");
   for (const TomlTable& table : c.document.root().tables("sensors")) {
@@ -44,11 +45,13 @@ std::vector<Sensor> read_sensors(const Composition& c, double output_interval) {
     s.interval = 1.0 / rate;
     const double share = s.interval / output_interval;
     if (!(std::abs(share - std::round(share)) < 1e-6 * share) || share < 0.5)
-      table.fail("rate_Hz", fmt::format("must be 1/output_interval_s, {:.9g}, or that divided by a whole number",
-                                        1.0 / output_interval));
+      table.fail("rate_Hz",
+                 fmt::format("must be 1/output_interval_s, {:.9g}, or that divided by a whole number",
+                             1.0 / output_interval));
     s.delay = table.number_or("delay_s", 0.0, Range::from(0.0, 1e4));
     s.noise = table.number_or("noise", 0.0, Range::from(0.0, 1e9));
-    s.seed = static_cast<unsigned>(table.integer_or("seed", static_cast<int>(sensors.size()) + 1, 0, 2147483647));
+    s.seed =
+        static_cast<unsigned>(table.integer_or("seed", static_cast<int>(sensors.size()) + 1, 0, 2147483647));
     sensors.push_back(std::move(s));
   }
   return sensors;

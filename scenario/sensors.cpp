@@ -150,7 +150,9 @@ coupling::SensedSignal sensed_by(const Sensor& sensor) {
     return [kept, sight](const MotionSample& s) -> Vector3d { return sight->of(s) / unit_of(*kept).size; };
   };
   if (sensor.noise > 0.0)
-    signal.noise = [stream = std::make_shared<NoiseStream>(sensor)](long reading) { return stream->of(reading); };
+    signal.noise = [stream = std::make_shared<NoiseStream>(sensor)](long reading) {
+      return stream->of(reading);
+    };
   return signal;
 }
 
@@ -174,7 +176,8 @@ std::vector<std::string> Sensor::columns() const {
   return names;
 }
 
-Readings read_off(const Sensor& sensor, const coupling::Motion& motion, const std::vector<MotionSample>& samples) {
+Readings read_off(const Sensor& sensor, const coupling::Motion& motion,
+                  const std::vector<MotionSample>& samples) {
   Readings readings;
   readings.values.resize(at(sensor.components()));
   if (samples.empty()) return readings;
@@ -194,7 +197,8 @@ Readings read_off(const Sensor& sensor, const coupling::Motion& motion, const st
       value += beyond / (samples[k + 1].time - samples[k].time) * (sight.of(samples[k + 1]) - value);
     readings.times.push_back(time);
     const Vector3d error = sensor.noise > 0.0 ? noise.of(i) : Vector3d::Zero();
-    for (int a = 0; a < sensor.components(); ++a) readings.values[at(a)].push_back(value[a] / unit.size + error[a]);
+    for (int a = 0; a < sensor.components(); ++a)
+      readings.values[at(a)].push_back(value[a] / unit.size + error[a]);
   }
   return readings;
 }

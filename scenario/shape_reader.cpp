@@ -25,7 +25,19 @@ namespace {
 using base::mm;
 constexpr double far = farthest_mm;
 
-enum class ShapeKind { knife_edge, cylinder, sphere, capsule, cone, grapple_shaft, ring, cup, plane, revolved, mesh };
+enum class ShapeKind {
+  knife_edge,
+  cylinder,
+  sphere,
+  capsule,
+  cone,
+  grapple_shaft,
+  ring,
+  cup,
+  plane,
+  revolved,
+  mesh
+};
 
 std::optional<ShapeKind> read_kind(const TomlTable& table) {
   static constexpr Choice<ShapeKind> kinds[] = {{"knife_edge", ShapeKind::knife_edge},
@@ -44,12 +56,14 @@ std::optional<ShapeKind> read_kind(const TomlTable& table) {
 
 // The document is told what a maker of shapes finds wrong.
 template <class Make>
-std::shared_ptr<const coupling::ContactShape> made(const TomlTable& table, std::string_view key, const Make& make) {
+std::shared_ptr<const coupling::ContactShape> made(const TomlTable& table, std::string_view key,
+                                                   const Make& make) {
   try {
     return make();
   } catch (const base::InputError& error) {
     for (const base::InputProblem& p : error.problems())
-      table.fail(key, p.file.empty() ? fmt::format("{} = {}, {}", p.key, p.value, p.requirement) : p.message());
+      table.fail(key,
+                 p.file.empty() ? fmt::format("{} = {}, {}", p.key, p.value, p.requirement) : p.message());
   }
   return nullptr;
 }
@@ -66,8 +80,9 @@ std::shared_ptr<const coupling::ContactShape> read_revolved(const TomlTable& tab
   if (height.size() != n || rounding.size() != n) return nullptr;
   std::vector<Eigen::Vector2d> corners;
   for (std::size_t k = 0; k < n; ++k) corners.emplace_back(radius[k], height[k]);
-  return made(table, "kind",
-              [&] { return std::make_shared<coupling::RevolvedShape>(coupling::rounded_profile(corners, rounding)); });
+  return made(table, "kind", [&] {
+    return std::make_shared<coupling::RevolvedShape>(coupling::rounded_profile(corners, rounding));
+  });
 }
 
 coupling::GrappleShaft read_grapple_shaft(const TomlTable& table) {
@@ -84,7 +99,8 @@ coupling::GrappleShaft read_grapple_shaft(const TomlTable& table) {
 
 }  // namespace
 
-std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table, const std::filesystem::path& folder,
+std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table,
+                                                         const std::filesystem::path& folder,
                                                          std::string& meshes) {
   const Range size = Range::above(0.0, far);
   const Range from_zero = Range::from(0.0, far);
@@ -109,7 +125,8 @@ std::shared_ptr<const coupling::ContactShape> read_shape(const TomlTable& table,
       const double lower = table.number("lower_radius_mm", from_zero, mm);
       const double upper = table.number("upper_radius_mm", from_zero, mm);
       const double length = table.number("length_mm", size, mm);
-      if (lower == 0.0 && upper == 0.0) table.fail("upper_radius_mm", "must be > 0 where lower_radius_mm is 0");
+      if (lower == 0.0 && upper == 0.0)
+        table.fail("upper_radius_mm", "must be > 0 where lower_radius_mm is 0");
       if (!(std::max(lower, upper) > 0.0 && lower >= 0.0 && upper >= 0.0 && length > 0.0)) return nullptr;
       return coupling::truncated_cone(lower, upper, length);
     }
@@ -201,7 +218,8 @@ ShapePoints read_shape_points(const TomlTable& table, const std::filesystem::pat
     case ShapeKind::capsule: {
       const double half = 0.5 * number("length_mm", size);
       const int along = table.integer_or("axis_points", 2, 2, 1000);
-      for (int k = 0; k < along; ++k) result.points.emplace_back(0.0, 0.0, half * (2.0 * k / (along - 1) - 1.0));
+      for (int k = 0; k < along; ++k)
+        result.points.emplace_back(0.0, 0.0, half * (2.0 * k / (along - 1) - 1.0));
       if (*kind == ShapeKind::capsule) result.radius = number("radius_mm", size);
       break;
     }

@@ -30,6 +30,7 @@ struct ShapePoints {
   std::vector<Eigen::Vector3d> points;  ///< [m]; none: of a plane
   double radius = 0.0;                  ///< [m]
 };
-[[nodiscard]] ShapePoints read_shape_points(const base::TomlTable& table, const std::filesystem::path& folder);
+[[nodiscard]] ShapePoints read_shape_points(const base::TomlTable& table,
+                                            const std::filesystem::path& folder);
 
 }  // namespace snare::scenario

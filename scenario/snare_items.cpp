@@ -53,7 +53,8 @@ struct Snares::Item {
 
   /// Of the place of a wire on the fixed ring, to either side that the ring turns.                  theory.md (M.24)
   [[nodiscard]] double azimuth(std::size_t k) const {
-    return first_azimuth + 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(heights.size());
+    return first_azimuth +
+           2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(heights.size());
   }
 
   /// A ring with a spoke at the place of every wire, so that its turning can be seen.
@@ -83,7 +84,8 @@ SnareJoint read_joint(const TomlTable& table, const std::string& name, bool slid
                                   : table.number_or("stiffness_Nm_rad", 1e5, Range::above(0.0, 1e15));
   const double damping = slides ? table.number_or("damping_Ns_m", 1e4, Range::from(0.0, 1e12))
                                 : table.number_or("damping_Nms_rad", 10.0, Range::from(0.0, 1e12));
-  if (stiffness > 0.0 && damping >= 0.0) j.joint.spring = multibody::DeflectionLaw::linear(stiffness, damping);
+  if (stiffness > 0.0 && damping >= 0.0)
+    j.joint.spring = multibody::DeflectionLaw::linear(stiffness, damping);
   j.joint.back_drive = table.number_or(slides ? "back_drive_N" : "back_drive_Nm", 0.0, Range::from(0.0, 1e9));
   j.start = slides ? table.number_or("start_mm", 0.0, Range::from(-1e4, 1e4), mm)
                    : table.number_or("start_deg", 115.0 * degree, Range::from(0.0, 360.0), degree);
@@ -108,7 +110,8 @@ Snares::Snares(Composition& composition) : c_(composition) {
     static constexpr base::Choice<double> senses[] = {{"left", 1.0}, {"right", -1.0}};
     if (table.has("turns")) item.sense = table.choice("turns", senses).value_or(1.0);
     item.ring = read_joint(table.table("ring"), item.name + "::ring", false);
-    if (table.has("carriage")) item.carriage = read_joint(table.table("carriage"), item.name + "::carriage", true);
+    if (table.has("carriage"))
+      item.carriage = read_joint(table.table("carriage"), item.name + "::carriage", true);
     const int count = table.integer_or("wires", 3, 0, 12);
     double step = 0.0;
     if (count > 0) {
@@ -161,13 +164,17 @@ void Snares::place(const Item& item, const PlacedFrame& on) {
 
   std::vector<double> start;
   int base = tree.add_fixed(frame, item.name + "::housing", X_FS);
-  const auto add = [&](const SnareJoint& j, const std::string& body, multibody::JointKind kind, double sense) {
-    const double mass = kind == multibody::JointKind::prismatic ? j.load : 2.0 * j.load / (item.radius * item.radius);
+  const auto add = [&](const SnareJoint& j, const std::string& body, multibody::JointKind kind,
+                       double sense) {
+    const double mass =
+        kind == multibody::JointKind::prismatic ? j.load : 2.0 * j.load / (item.radius * item.radius);
     // A hoop: half as much across the axis. The carriage turns with what carries it: as a hoop of its mass.
-    const double about_axis = kind == multibody::JointKind::prismatic ? mass * item.radius * item.radius : j.load;
+    const double about_axis =
+        kind == multibody::JointKind::prismatic ? mass * item.radius * item.radius : j.load;
     const Vector3d inertia(0.5 * about_axis, 0.5 * about_axis, about_axis);
-    base = tree.add_moving(base, body, kind, sense * Vector3d::UnitZ(), {},
-                           multibody::SpatialInertia::about_centre(mass, Vector3d::Zero(), inertia.asDiagonal()));
+    base = tree.add_moving(
+        base, body, kind, sense * Vector3d::UnitZ(), {},
+        multibody::SpatialInertia::about_centre(mass, Vector3d::Zero(), inertia.asDiagonal()));
     multibody::ElasticJoint joint = j.joint;
     joint.body = tree.size() - 1;
     c_.joints[j.joint.name] = {index, arm.arm.motors(), kind == multibody::JointKind::prismatic};
@@ -185,7 +192,8 @@ void Snares::place(const Item& item, const PlacedFrame& on) {
   const auto extend = [&start](Eigen::VectorXd& v, bool with) {
     const Eigen::Index n = v.size();
     v.conservativeResize(n + static_cast<Eigen::Index>(start.size()));
-    for (std::size_t k = 0; k < start.size(); ++k) v[n + static_cast<Eigen::Index>(k)] = with ? start[k] : 0.0;
+    for (std::size_t k = 0; k < start.size(); ++k)
+      v[n + static_cast<Eigen::Index>(k)] = with ? start[k] : 0.0;
   };
   extend(arm.start.q, true);
   extend(arm.start.v, false);
@@ -196,7 +204,8 @@ void Snares::place(const Item& item, const PlacedFrame& on) {
   for (const char* own : {"housing", "carriage", "fixed", "turning"}) {
     const int f = tree.find_frame(item.name + "::" + own);
     if (f < 0) continue;
-    const PlacedFrame placed{{coupling::MotionCarrier::Kind::arm, index, f}, multibody::frame_pose(tree, now, f)};
+    const PlacedFrame placed{{coupling::MotionCarrier::Kind::arm, index, f},
+                             multibody::frame_pose(tree, now, f)};
     c_.placement.add(item.name + "::" + own, placed);
     const bool is_ring = std::string_view(own) == "fixed" || std::string_view(own) == "turning";
     if (is_ring && item.wire)
@@ -272,7 +281,8 @@ void Snares::add_walls() {
     wall.shape = coupling::hollow_cylinder(inner, inner + thickness, length, 0.0);
     c_.add_shape(item.name + "::wall", wall, *housing, mass, c_.snares[item.name].wires);
     for (const int w : c_.snares[item.name].wires) {
-      if (may_press) c_.wires[at(w)].wall = {housing->X_WF.p, inner, inner + thickness, length, wall.foundation};
+      if (may_press)
+        c_.wires[at(w)].wall = {housing->X_WF.p, inner, inner + thickness, length, wall.foundation};
     }
     c_.drawn.push_back({item.name + "::wall", housing->carrier, housing->X_WF, wall.shape->drawing()});
   }

@@ -34,7 +34,8 @@ class BenchmarkReader {
     if (cases.empty()) top.fail("cases", "must be one or more, as [[cases]]");
     const TomlNode* nodes = root_.find("cases");
     std::set<std::string> names;
-    for (std::size_t k = 0; k < cases.size(); ++k) result.cases.push_back(read_case(cases[k], &nodes->items[k], names));
+    for (std::size_t k = 0; k < cases.size(); ++k)
+      result.cases.push_back(read_case(cases[k], &nodes->items[k], names));
     document_.finish();
     return result;
   }
@@ -52,7 +53,8 @@ class BenchmarkReader {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
     };
     if (name.empty() && !table.has("name")) return name;
-    if (name.empty() || !std::ranges::all_of(name, plain)) table.fail("name", "must be of letters, digits and _");
+    if (name.empty() || !std::ranges::all_of(name, plain))
+      table.fail("name", "must be of letters, digits and _");
     if (!taken.insert(name).second) table.fail("name", "must not be that of another one");
     return name;
   }
@@ -79,7 +81,8 @@ class BenchmarkReader {
     c.x = table.text_or("x", "time_s");
     c.columns = read_columns(table, node, "quantities");
     if (c.columns.contains(c.x)) table.table("quantities").fail(c.x, "must be another name than that of x");
-    if (c.columns.empty()) table.fail("quantities", "must be one or more: a name = \"the column of the history\"");
+    if (c.columns.empty())
+      table.fail("quantities", "must be one or more: a name = \"the column of the history\"");
     const TomlTable touches = table.table("touch_above");
     for (const auto& [name, column] : c.columns)
       if (touches.has(name)) c.touch_above[name] = touches.number(name, Range::above(0.0));
@@ -93,14 +96,16 @@ class BenchmarkReader {
     c.step_at = table.optional_number("step_at_s", Range::above(0.0));
     const TomlNode* refinements = node->find("refinements");
     const std::vector<TomlTable> steps = table.tables("refinements");
-    if (steps.size() < 2) table.fail("refinements", "must be two or more, coarse to fine, as [[cases.refinements]]");
+    if (steps.size() < 2)
+      table.fail("refinements", "must be two or more, coarse to fine, as [[cases.refinements]]");
     for (std::size_t k = 0; k < steps.size(); ++k)
       c.refinements.push_back(read_fixed_keys(steps[k], &refinements->items[k], "set"));
     const TomlNode* models = node->find("models");
     const std::vector<TomlTable> list = table.tables("models");
     if (list.empty()) table.fail("models", "must be one or more, as [[cases.models]]");
     std::set<std::string> taken;
-    for (std::size_t k = 0; k < list.size(); ++k) c.models.push_back(read_model(list[k], &models->items[k], c, taken));
+    for (std::size_t k = 0; k < list.size(); ++k)
+      c.models.push_back(read_model(list[k], &models->items[k], c, taken));
     return c;
   }
 
@@ -130,7 +135,8 @@ class BenchmarkReader {
 
 }  // namespace
 
-BenchmarkFile read_benchmark_file(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
+BenchmarkFile read_benchmark_file(const std::filesystem::path& file,
+                                  const std::vector<base::Override>& overrides) {
   TomlNode root = base::parse_toml(file.string(), base::read_text(file, base::TomlDocument::size_limit));
   std::vector<base::InputProblem> problems;
   for (const base::Override& change : overrides) base::apply_override(root, change, problems);

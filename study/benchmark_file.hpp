@@ -28,10 +28,11 @@ struct BenchmarkCase {
   std::string name, title;
   std::filesystem::path file;  ///< that the archive is made with
   std::vector<base::Override> fixed;
-  std::string x;                              ///< first column of every history of the case
-  Columns columns;                            ///< of the history by the names of the quantities
-  std::map<std::string, double> touch_above;  ///< of quantities for which touches are looked for, in their units
-  std::vector<Collected> outcome;             ///< fields of the result that must be those of the archive
+  std::string x;    ///< first column of every history of the case
+  Columns columns;  ///< of the history by the names of the quantities
+  std::map<std::string, double>
+      touch_above;                 ///< of quantities for which touches are looked for, in their units
+  std::vector<Collected> outcome;  ///< fields of the result that must be those of the archive
   std::vector<std::vector<base::Override>> refinements;  ///< with which the archive is made, coarse to fine
   std::vector<BenchmarkModel> models;
   std::optional<double> step_at;  ///< when the largest explicit step is asked for [s]; none: it is not

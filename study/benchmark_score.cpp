@@ -93,7 +93,8 @@ TrackScore score_of(const Track& track, const Track& reference, std::optional<do
   const auto square = [](double q) { return q * q; };
   score.rms = std::sqrt(ratio(integral_of(apart, square), integral_of(whole, square)));
   if (threshold) {
-    const std::optional<double> touch = first_reach(mine, *threshold), expected = first_reach(whole, *threshold);
+    const std::optional<double> touch = first_reach(mine, *threshold),
+                                expected = first_reach(whole, *threshold);
     score.same_touch = touch.has_value() == expected.has_value();
     if (touch && expected) score.touch = *touch - *expected;
   }

@@ -18,12 +18,14 @@ struct TrackScore {
   std::optional<double>
       touch;  ///< where |q| first reaches a threshold, less the reference's, in the unit of x; none: one of them does not
   bool same_touch = true;  ///< both reach the threshold, or neither
-  double covered = 1.0;    ///< share of the reference's range of x that the track has [-]; the others are of this share
+  double covered =
+      1.0;  ///< share of the reference's range of x that the track has [-]; the others are of this share
 };
 
 /// Against a reference of at least two rows. `threshold`: of |q|, in its unit; none: touches are not looked for. Throws std::invalid_argument
 /// where x falls, where a track has fewer than two rows or where they have no range of x in common.
-[[nodiscard]] TrackScore score_of(const Track& track, const Track& reference, std::optional<double> threshold);
+[[nodiscard]] TrackScore score_of(const Track& track, const Track& reference,
+                                  std::optional<double> threshold);
 
 /// First x at which |q| reaches a threshold [unit of q], straight between rows [unit of x]; none where it does not.
 [[nodiscard]] std::optional<double> first_reach(const Track& track, double threshold);

@@ -93,7 +93,8 @@ void run_cases(Dispatcher& dispatcher, int threads, const RunCase& run, Idle idl
   }
 }
 
-std::vector<TimedResult> run_list(std::size_t count, int threads, const std::function<std::string(std::size_t)>& run,
+std::vector<TimedResult> run_list(std::size_t count, int threads,
+                                  const std::function<std::string(std::size_t)>& run,
                                   const std::function<bool()>& stop) {
   std::vector<TimedResult> results(count);
   std::atomic<std::size_t> next{0};

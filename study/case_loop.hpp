@@ -17,10 +17,12 @@ class Dispatcher {
  public:
   /// finished: called with the results, one at a time. What it throws ends all and comes out of `rethrow`.
   /// stop: looked at before anything is handed out.
-  Dispatcher(Scheduler scheduler, std::function<void(std::uint64_t index, const std::string& result)> finished,
+  Dispatcher(Scheduler scheduler,
+             std::function<void(std::uint64_t index, const std::string& result)> finished,
              std::function<bool()> stop);
 
-  [[nodiscard]] std::vector<std::uint64_t> take(int worker);  ///< cases for a worker; empty: there are no more
+  [[nodiscard]] std::vector<std::uint64_t> take(
+      int worker);  ///< cases for a worker; empty: there are no more
   void report(int worker, std::uint64_t index, const std::string& result, double seconds);
   /// given_up: result of a case that is not handed out again.
   void lost(int worker, const std::function<std::string(std::uint64_t index)>& given_up);

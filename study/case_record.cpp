@@ -22,8 +22,8 @@ std::string line_of(const CaseRecord& record) {
 std::optional<CaseRecord> record_of(std::string_view line) {
   constexpr std::size_t least = 4;
   const json all = json::parse(line, nullptr, false);
-  if (!all.is_array() || all.size() < least || !all[0].is_string() || !all[1].is_string() || !all[2].is_number() ||
-      !all[3].is_array())
+  if (!all.is_array() || all.size() < least || !all[0].is_string() || !all[1].is_string() ||
+      !all[2].is_number() || !all[3].is_array())
     return std::nullopt;
   CaseRecord record{all[0], all[1], all[2], all[3].get<std::vector<json>>(), {}};
   if (all.size() == least) return record;

@@ -23,7 +23,8 @@ constexpr std::pair<std::string_view, Taken> taken_words[] = {{"min ", Taken::le
                                                               {"count ", Taken::count}};
 
 /// Under what an element of an array may have its name.
-constexpr const char* naming_keys[] = {"name", "series", "model", "contact", "body", "wire", "effect", "joint"};
+constexpr const char* naming_keys[] = {"name", "series", "model",  "contact",
+                                       "body", "wire",   "effect", "joint"};
 
 std::string words_of(const json& node) {
   constexpr std::size_t most = 12;
@@ -53,14 +54,16 @@ const json* element(const json& array, const std::string& wanted) {
   for (const char* key : naming_keys) {
     for (const json& one : array) {
       const auto found = one.is_object() ? one.find(key) : one.end();
-      if (one.is_object() && found != one.end() && found->is_string() && found->get_ref<const std::string&>() == wanted)
+      if (one.is_object() && found != one.end() && found->is_string() &&
+          found->get_ref<const std::string&>() == wanted)
         return &one;
     }
   }
   std::size_t number = 0;
   const char* end = wanted.data() + wanted.size();
   const auto [stop, error] = std::from_chars(wanted.data(), end, number);
-  return error == std::errc() && stop == end && number >= 1 && number <= array.size() ? &array[number - 1] : nullptr;
+  return error == std::errc() && stop == end && number >= 1 && number <= array.size() ? &array[number - 1]
+                                                                                      : nullptr;
 }
 
 void walk(const json& node, const Collected& field, std::size_t step, std::vector<const json*>& found) {

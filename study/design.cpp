@@ -21,7 +21,8 @@ struct Design::Sequence {
     for (std::uint64_t r = 0; r < replicates; ++r) {
       shifts.emplace_back(dimensions);
       for (std::size_t d = 0; d < dimensions; ++d)
-        shifts[r][d] = static_cast<std::uint64_t>(hashed_uniform(seed, r * dimensions + d, ~std::uint64_t{0}) * 0x1p64);
+        shifts[r][d] =
+            static_cast<std::uint64_t>(hashed_uniform(seed, r * dimensions + d, ~std::uint64_t{0}) * 0x1p64);
     }
   }
 
@@ -121,7 +122,8 @@ std::vector<double> Design::values_of_uniforms(std::vector<double> u) const {
   for (std::size_t j = 0; j < u.size(); ++j) {
     const Variable& v = variables_[j];
     const auto levels = static_cast<double>(v.levels.size());
-    u[j] = v.levels.empty() ? quantile(v.distribution, u[j]) : std::min(std::floor(u[j] * levels), levels - 1.0);
+    u[j] =
+        v.levels.empty() ? quantile(v.distribution, u[j]) : std::min(std::floor(u[j] * levels), levels - 1.0);
   }
   return u;
 }
@@ -154,7 +156,8 @@ bool is_correlation(const Eigen::MatrixXd& matrix) {
   if (matrix != matrix.transpose() || (matrix.diagonal().array() != 1.0).any()) return false;
   const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
   constexpr double least = 1e-12;  // of a pivot: below it the variables are one
-  return factor.info() == Eigen::Success && Eigen::MatrixXd(factor.matrixL()).diagonal().minCoeff() > std::sqrt(least);
+  return factor.info() == Eigen::Success &&
+         Eigen::MatrixXd(factor.matrixL()).diagonal().minCoeff() > std::sqrt(least);
 }
 
 }  // namespace snare::study

@@ -28,7 +28,7 @@ enum class DesignKind {
   sobol,            ///< Sobol's sequence, shifted at random
   file,             ///< a table of cases
   sensitivity,  ///< n times the rows A, B and A with a column of B, in replicates                         theory.md (S.4)
-  subset        ///< the next cases depend on the last ones: no list beforehand
+  subset  ///< the next cases depend on the last ones: no list beforehand
 };
 
 /// What a design depends on beside its variables; equal settings give equal cases.

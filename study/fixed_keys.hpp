@@ -14,7 +14,8 @@ namespace snare::study {
 
 /// Keys of another file with their values, as a table of that name has them: `set = { "wire.length_mm" = 181.0 }`. `parent`: the same table
 /// that `owner` is, as it was parsed; null: it has none. What cannot be an override is reported.
-[[nodiscard]] std::vector<base::Override> read_fixed_keys(const base::TomlTable& owner, const base::TomlNode* parent,
+[[nodiscard]] std::vector<base::Override> read_fixed_keys(const base::TomlTable& owner,
+                                                          const base::TomlNode* parent,
                                                           std::string_view name);
 
 }  // namespace snare::study

@@ -47,17 +47,20 @@ std::optional<std::pair<std::uint64_t, std::string_view>> parsed(std::string_vie
 }  // namespace
 
 Journal::Journal(std::filesystem::path file, const std::string& identity, std::uint64_t count, Use use)
-    : file_(std::move(file)), limit_(count) {
+    : file_(std::move(file)), appends_(use == Use::append), limit_(count) {
   assert(identity.find('\n') == std::string::npos);
   if (count > 0) offsets_.resize(count);
   descriptor_ = ::open(file_.c_str(), (use == Use::append ? O_RDWR | O_CREAT : O_RDONLY) | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), file_.string() + ": cannot be written");
+  if (descriptor_ < 0)
+    throw std::system_error(errno, std::generic_category(), file_.string() + ": cannot be written");
   try {
     struct stat status {};
     if (::fstat(descriptor_, &status) == 0 && !S_ISREG(status.st_mode))  // a device may have no end
-      throw base::InputError({file_.string(), 0, "", "", "is a device, a pipe or a socket, must be a regular file"});
+      throw base::InputError(
+          {file_.string(), 0, "", "", "is a device, a pipe or a socket, must be a regular file"});
     if (use == Use::append && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-      throw base::InputError({file_.string(), 0, "", "", "another run is writing into this folder, must be its own"});
+      throw base::InputError(
+          {file_.string(), 0, "", "", "another run is writing into this folder, must be its own"});
     load(identity, use);
   } catch (...) {
     ::close(descriptor_);
@@ -67,11 +70,13 @@ Journal::Journal(std::filesystem::path file, const std::string& identity, std::u
 }
 
 Journal::~Journal() {
+  if (appends_ && size_ == begin_) ::unlink(file_.c_str());
   ::close(descriptor_);
 }
 
 void Journal::load(const std::string& identity, Use use) {
   const std::string head = std::string(schema) + identity;
+  begin_ = head.size() + 1;
   std::string rest;  // of the chunks so far: a line that has not ended
   std::uint64_t line_begin = 0;
   bool first = true;
@@ -84,7 +89,8 @@ void Journal::load(const std::string& identity, Use use) {
       if (line != head) {
         throw base::InputError(
             {file_.string(), 0, "", "",
-             "belongs to another study, or to this one before its sweep file, its case, a file that these name, or the "
+             "belongs to another study, or to this one before its sweep file, its case, a file that these "
+             "name, or the "
              "program was changed; take another --out, or delete this file to begin again"});
       }
       return;
@@ -139,8 +145,8 @@ void Journal::write(std::string_view text) {
 int Journal::try_write(std::string_view text) noexcept {
   std::size_t written = 0;
   while (written < text.size()) {
-    const ssize_t n =
-        ::pwrite(descriptor_, text.data() + written, text.size() - written, static_cast<off_t>(size_ + written));
+    const ssize_t n = ::pwrite(descriptor_, text.data() + written, text.size() - written,
+                               static_cast<off_t>(size_ + written));
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) {
       const int error = n < 0 ? errno : ENOSPC;

@@ -13,7 +13,8 @@ namespace snare::study {
 /// What is finished of a study, in a file to which one line a case is appended.                docs/decisions/sweeps.md#cases-journal-and-ranks
 ///
 /// A line has the case's number, its result, and a checksum. After a kill at any moment the lines that are whole count; a torn or
-/// damaged one is taken out or passed over, and its case is run again. 8 bytes a case are held in memory.
+/// damaged one is taken out or passed over, and its case is run again. A file to which no case was appended is removed with the object.
+/// 8 bytes a case are held in memory.
 class Journal {
  public:
   enum class Use {
@@ -23,7 +24,8 @@ class Journal {
   /// Opens the file; to append it is made where it is missing. identity: one line of text, equal for equal studies. count: cases there
   /// are; 0: not known. Throws base::InputError when the file belongs to another study, is held by another run or is no regular file,
   /// std::system_error when the system refuses.
-  Journal(std::filesystem::path file, const std::string& identity, std::uint64_t count, Use use = Use::append);
+  Journal(std::filesystem::path file, const std::string& identity, std::uint64_t count,
+          Use use = Use::append);
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
@@ -56,10 +58,12 @@ class Journal {
   [[nodiscard]] int try_write(std::string_view text) noexcept;
 
   std::filesystem::path file_;
+  bool appends_ = true;
   int descriptor_ = -1;
   mutable std::mutex mutex_;
   std::vector<std::uint64_t> offsets_;  // 1 + where a case's line begins; 0: none
   std::uint64_t limit_ = 0;             // cases there may be; 0: any
+  std::uint64_t begin_ = 0;             // of the first case [byte]
   std::uint64_t size_ = 0;              // of the file's whole lines [byte]
   std::uint64_t finished_ = 0;
   std::uint64_t end_ = 0;

@@ -80,10 +80,11 @@ void RankLeader::hear(Dispatcher& dispatcher) {
     std::vector<Done> results;
     reader(identity)(results);
     if (identity != settings_.identity) {
-      throw base::InputError(
-          {"", 0, "rank", std::to_string(m->from), "must read the same files as rank 0, and be the same version"});
+      throw base::InputError({"", 0, "rank", std::to_string(m->from),
+                              "must read the same files as rank 0, and be the same version"});
     }
-    for (const Done& done : results) dispatcher.report(worker_of(m->from), done.index, done.result, done.seconds);
+    for (const Done& done : results)
+      dispatcher.report(worker_of(m->from), done.index, done.result, done.seconds);
     other.idle = true;
   }
 }

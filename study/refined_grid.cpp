@@ -6,7 +6,8 @@
 
 namespace snare::study {
 
-RefinedGrid::RefinedGrid(Settings settings) : settings_(std::move(settings)), strides_(settings_.axes.size()) {
+RefinedGrid::RefinedGrid(Settings settings)
+    : settings_(std::move(settings)), strides_(settings_.axes.size()) {
   std::uint64_t count = 1;
   for (std::size_t j = settings_.axes.size(); j-- > 0;) {
     strides_[j] = count;
@@ -27,7 +28,8 @@ RefinedGrid::RefinedGrid(Settings settings) : settings_(std::move(settings)), st
 template <class Use>
 void RefinedGrid::for_each_corner(const Use& use) {
   for (std::uint64_t index = 0; index < points_.size(); ++index)
-    if (std::ranges::all_of(refined_, [&](std::size_t j) { return place(index, j) % width_ == 0; })) use(index);
+    if (std::ranges::all_of(refined_, [&](std::size_t j) { return place(index, j) % width_ == 0; }))
+      use(index);
 }
 
 bool RefinedGrid::agree(const std::vector<std::uint64_t>& points) const {
@@ -88,7 +90,8 @@ void RefinedGrid::halve() {
     }
     double sum = 0.0;
     for (const std::uint64_t corner : corners) sum += points_[corner].seen.number;
-    points_[index] = {State::inferred, {sum / static_cast<double>(corners.size()), points_[corners.front()].seen.word}};
+    points_[index] = {State::inferred,
+                      {sum / static_cast<double>(corners.size()), points_[corners.front()].seen.word}};
   });
 }
 

@@ -28,8 +28,8 @@ class RefinedGrid {
   };
   struct Settings {
     std::vector<Axis>
-        axes;        ///< the last one fastest; 1 to most_axes of them refined, at most most_points points in all
-    int levels = 1;  ///< halvings, >= 1
+        axes;  ///< the last one fastest; 1 to most_axes of them refined, at most most_points points in all
+    int levels = 1;           ///< halvings, >= 1
     double differs_by = 0.0;  ///< numbers that are no farther apart agree, in the quantity's unit
   };
   static constexpr std::size_t most_axes = 6;

@@ -22,11 +22,13 @@ std::vector<std::uint64_t> Scheduler::take(int worker) {
   } else {
     // Guided self-scheduling (Polychronopoulos, Kuck 1987), a quarter of an even share at most, so that the last chunks are
     // single cases.
-    const std::uint64_t share = (settings_.count - next_) / (4 * static_cast<std::uint64_t>(settings_.workers));
+    const std::uint64_t share =
+        (settings_.count - next_) / (4 * static_cast<std::uint64_t>(settings_.workers));
     std::uint64_t size = 1;
     if (timed_ > 0 && settings_.chunk_s > 0.0) {
       const double mean = std::max(seconds_ / static_cast<double>(timed_), 1e-9);
-      size = static_cast<std::uint64_t>(std::min(settings_.chunk_s / mean, static_cast<double>(settings_.largest)));
+      size = static_cast<std::uint64_t>(
+          std::min(settings_.chunk_s / mean, static_cast<double>(settings_.largest)));
     }
     size = std::max<std::uint64_t>(1, std::min(size, share));
     while (cases.size() < size && !at_end()) {

@@ -29,7 +29,8 @@ double half_interval(const Sums& v, const Sums& w, const Sums& rows) {
     squares += std::pow(v[k] - r * w[k], 2);
   }
   constexpr double tail = 0.025;
-  const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(replicates - 1.0), tail));
+  const double t =
+      boost::math::quantile(boost::math::complement(boost::math::students_t(replicates - 1.0), tail));
   return t * std::sqrt(replicates / (replicates - 1.0) * squares) / sum(w);
 }
 

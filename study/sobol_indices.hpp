@@ -23,9 +23,9 @@ inline constexpr double least_effective_rows = 10.0;
 /// Indices of all variables, with what they were computed from.
 struct SobolIndices {
   std::vector<SobolIndex>
-      of;                 ///< one a variable; empty below two replicates with whole rows and below least_effective_rows
-  double mean = 0.0;      ///< of the field, in its unit
-  double variance = 0.0;  ///< of the field, in its unit squared
+      of;  ///< one a variable; empty below two replicates with whole rows and below least_effective_rows
+  double mean = 0.0;            ///< of the field, in its unit
+  double variance = 0.0;        ///< of the field, in its unit squared
   double effective_rows = 0.0;  ///< rows, as many as equal shares would need, of which the variance consists
   std::uint64_t rows = 0;       ///< that were used
   std::uint64_t dropped = 0;    ///< in which a case has no result
@@ -34,7 +34,8 @@ struct SobolIndices {
 /// From the cases of a sensitivity design. first: Saltelli et al. 2010, (b) of Table 2, or of rare outcomes Jansen 1999; total: Jansen;
 /// intervals by Student's t over the replicates. result: of a case, asked twice in ascending order; only sums are kept.
 /// In the field's unit.
-[[nodiscard]] SobolIndices sobol_indices(std::size_t variables, std::uint64_t rows,
-                                         const std::function<std::optional<double>(std::uint64_t index)>& result);
+[[nodiscard]] SobolIndices sobol_indices(
+    std::size_t variables, std::uint64_t rows,
+    const std::function<std::optional<double>(std::uint64_t index)>& result);
 
 }  // namespace snare::study

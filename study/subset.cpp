@@ -40,7 +40,8 @@ void SubsetSimulation::ask() {
     for (std::size_t d = 0; d < z.size(); ++d) z[d] = score(settings_.seed, told_ + k, d);
     if (!first_) {
       const std::vector<double>& from = chains_[k].back().scores;
-      for (std::size_t d = 0; d < z.size(); ++d) z[d] = std::sqrt(1.0 - step_ * step_) * from[d] + step_ * z[d];
+      for (std::size_t d = 0; d < z.size(); ++d)
+        z[d] = std::sqrt(1.0 - step_ * step_) * from[d] + step_ * z[d];
     }
     asked_.push_back(std::move(z));
   }
@@ -104,7 +105,8 @@ void SubsetSimulation::end_level() {
   std::vector<std::pair<std::size_t, const State*>> states;  // with their families
   for (std::size_t c = 0; c < chains_.size(); ++c)
     for (const State& state : chains_[c]) states.emplace_back(families_[c], &state);
-  std::ranges::stable_sort(states, [](const auto& a, const auto& b) { return a.second->margin > b.second->margin; });
+  std::ranges::stable_sort(states,
+                           [](const auto& a, const auto& b) { return a.second->margin > b.second->margin; });
   // seeds_ of the states are above it, more where margins are equal.
   const double next = 0.5 * (states[seeds_ - 1].second->margin + states[seeds_].second->margin);
   const double from = first_ ? far : threshold_;
@@ -112,7 +114,8 @@ void SubsetSimulation::end_level() {
   const bool stuck = !(next > states.back().second->margin);
   const bool last = states[seeds_ - 1].second->margin >= 0.0 || !std::isfinite(next) || stuck;
   const double threshold = last ? 0.0 : next;
-  const auto below = std::ranges::find_if(states, [&](const auto& s) { return s.second->margin < threshold; });
+  const auto below =
+      std::ranges::find_if(states, [&](const auto& s) { return s.second->margin < threshold; });
   states.erase(below, states.end());
   const double probability = static_cast<double>(states.size()) / static_cast<double>(seeds_ * length_);
   levels_.push_back({from, probability, variation_of(threshold, probability)});
@@ -120,7 +123,8 @@ void SubsetSimulation::end_level() {
   std::map<std::size_t, double> members;
   for (const auto& [family, state] : states) members[family] += 1.0;
   family_squares_ = 0.0;
-  for (const auto& [family, count] : members) family_squares_ += std::pow(count / static_cast<double>(hits_), 2);
+  for (const auto& [family, count] : members)
+    family_squares_ += std::pow(count / static_cast<double>(hits_), 2);
   threshold_interval_ = interval_of_threshold();
   reached_ = last && hits_ > 0;
   if (last || static_cast<int>(levels_.size()) >= settings_.most_levels)
@@ -130,7 +134,8 @@ void SubsetSimulation::end_level() {
 }
 
 // Of more states than seeds, by margin, every so-manieth: their margins are distributed as those of all.
-void SubsetSimulation::begin_level(const std::vector<std::pair<std::size_t, const State*>>& above, double threshold) {
+void SubsetSimulation::begin_level(const std::vector<std::pair<std::size_t, const State*>>& above,
+                                   double threshold) {
   std::vector<std::vector<State>> seeds;
   std::vector<std::size_t> families;
   for (std::size_t k = 0; k < seeds_; ++k) {
@@ -167,7 +172,8 @@ ProbabilityInterval SubsetSimulation::interval_of_threshold() const {
   if (levels_.size() == 1) return proportion_interval(hits_, seeds_ * length_);
   if (hits_ == 0) return {0.0, threshold_interval_.high};  // no more probable than the threshold before
   constexpr double tail = 0.025;
-  const double freedom = 1.0 / family_squares_;  // the mean is over all cases of the first level and costs none of them
+  const double freedom =
+      1.0 / family_squares_;  // the mean is over all cases of the first level and costs none of them
   const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(freedom), tail));
   const double factor = std::exp(t * std::sqrt(std::log1p(variation() * variation())));
   return {probability() / factor, std::min(1.0, probability() * factor)};

@@ -36,11 +36,15 @@ struct Draft {
   std::string column;    // of the table of cases
 };
 
-constexpr const char* sources[] = {"values", "range", "uniform", "normal", "lognormal", "triangular", "from_trace"};
+constexpr const char* sources[] = {"values",    "range",      "uniform",   "normal",
+                                   "lognormal", "triangular", "from_trace"};
 
-constexpr base::Choice<DesignKind> designs[] = {
-    {"grid", DesignKind::grid}, {"latin_hypercube", DesignKind::latin_hypercube}, {"sobol", DesignKind::sobol},
-    {"file", DesignKind::file}, {"sensitivity", DesignKind::sensitivity},         {"subset", DesignKind::subset}};
+constexpr base::Choice<DesignKind> designs[] = {{"grid", DesignKind::grid},
+                                                {"latin_hypercube", DesignKind::latin_hypercube},
+                                                {"sobol", DesignKind::sobol},
+                                                {"file", DesignKind::file},
+                                                {"sensitivity", DesignKind::sensitivity},
+                                                {"subset", DesignKind::subset}};
 
 class Reader {
  public:
@@ -93,7 +97,8 @@ class Reader {
     const TomlNode* list = root_.find("vary");
     const std::vector<TomlTable> tables = top_.tables("vary");
     if (tables.empty()) {
-      document_.add({file_.string(), 0, "vary", "", "is missing: what differs from case to case, as [[vary]]"});
+      document_.add(
+          {file_.string(), 0, "vary", "", "is missing: what differs from case to case, as [[vary]]"});
       return;
     }
     if (tables.size() > variable_limit) {
@@ -106,8 +111,9 @@ class Reader {
       read_keys(d, keys);
       d.variable.name = d.table.text_or("name", d.variable.keys.front());
       if ((d.table.has("name") || !d.variable.name.empty()) && !base::names_a_column(d.variable.name))
-        d.table.fail("name",
-                     "must be a name without commas, quotes, number signs and line breaks: it is that of a column");
+        d.table.fail(
+            "name",
+            "must be a name without commas, quotes, number signs and line breaks: it is that of a column");
       if (!names.insert(d.variable.name).second) d.table.fail("name", "must not be used twice");
       read_source(d);
       drafts_.push_back(std::move(d));
@@ -228,8 +234,8 @@ class Reader {
       std::string there;
       for (const std::string& key : numbers->keys) there += (there.empty() ? "" : ", ") + key;
       d.table.fail(d.table.has("parameter") ? "parameter" : "from_trace",
-                   fmt::format("the trace has no fitted number {} with a standard error; there are: {}", d.parameter,
-                               there.empty() ? "none" : there));
+                   fmt::format("the trace has no fitted number {} with a standard error; there are: {}",
+                               d.parameter, there.empty() ? "none" : there));
       return;
     }
     const auto at = static_cast<std::size_t>(found - numbers->keys.begin());
@@ -240,7 +246,8 @@ class Reader {
     if (!d.table.has("within")) return;
     const std::vector<double> ends = d.table.numbers("within", 2, 2, Range::finite());
     if (ends.size() != 2) return;
-    if (!d.variable.levels.empty()) d.table.fail("within", "must be left out where there is a list of values");
+    if (!d.variable.levels.empty())
+      d.table.fail("within", "must be left out where there is a list of values");
     if (!(ends[0] < ends[1])) {
       d.table.fail("within", "must be [low, high], low < high");
       return;
@@ -313,7 +320,8 @@ class Reader {
       const double r = table.number("correlation", Range{-1.0, 1.0, false});
       std::vector<Eigen::Index> at;
       for (std::size_t k = 0; k < names.size(); ++k) {
-        const auto found = std::ranges::find(drafts_, names[k], [](const Draft& d) { return d.variable.name; });
+        const auto found =
+            std::ranges::find(drafts_, names[k], [](const Draft& d) { return d.variable.name; });
         if (found == drafts_.end()) {
           table.fail_element("names", k, "is no name (or key) of a [[vary]]");
         } else if (!found->variable.levels.empty()) {
@@ -322,7 +330,8 @@ class Reader {
           at.push_back(found - drafts_.begin());
         }
       }
-      if (names.size() != 2 || (at.size() == 2 && at[0] == at[1])) table.fail("names", "must be two different names");
+      if (names.size() != 2 || (at.size() == 2 && at[0] == at[1]))
+        table.fail("names", "must be two different names");
       if (at.size() == 2) matrix(at[0], at[1]) = matrix(at[1], at[0]) = r;
       any = true;
     }
@@ -332,8 +341,8 @@ class Reader {
       if (listed)
         top_.fail("correlate", "must be left out in this design");
       else if (kind_ == DesignKind::sensitivity)
-        document_.add(
-            {file_.string(), 0, "from_trace", "", "numbers of a trace that are correlated have no Sobol indices"});
+        document_.add({file_.string(), 0, "from_trace", "",
+                       "numbers of a trace that are correlated have no Sobol indices"});
       return;
     }
     if (matrix.allFinite() && !is_correlation(matrix))
@@ -347,7 +356,8 @@ class Reader {
     const TomlTable table = top_.table("collect");
     const TomlNode* node = root_.find("collect");
     if (node == nullptr || node->kind != TomlNode::Kind::table || node->entries.empty()) {
-      document_.add({file_.string(), 0, "collect", "", "is missing: names of columns and fields of a case's result"});
+      document_.add(
+          {file_.string(), 0, "collect", "", "is missing: names of columns and fields of a case's result"});
       return fields;
     }
     std::set<std::string> names{"case", "status", "reason"};
@@ -363,7 +373,8 @@ class Reader {
         continue;
       }
       if (!names.insert(entry.key).second || !base::names_a_column(entry.key))
-        table.fail(entry.key, "must be a name that no other column has, without commas, quotes and number signs");
+        table.fail(entry.key,
+                   "must be a name that no other column has, without commas, quotes and number signs");
       for (const char* timed : {"wall_s", "real_time_factor", "seconds"}) {
         if (std::ranges::any_of(field->path, [&](const auto& step) { return step.key == timed; }))
           table.fail(entry.key, "must not be a time that the machine took: it differs from run to run");
@@ -374,7 +385,8 @@ class Reader {
   }
 
   /// Index of the field that `of` names.
-  static std::size_t read_field(const TomlTable& table, const std::string& of, const std::vector<Collected>& fields) {
+  static std::size_t read_field(const TomlTable& table, const std::string& of,
+                                const std::vector<Collected>& fields) {
     const auto found = std::ranges::find(fields, of, &Collected::name);
     if (found == fields.end() && !of.empty()) {
       std::vector<std::string> all;
@@ -417,11 +429,12 @@ class Reader {
     s.level_probability = table.number_or("level_probability", s.level_probability, Range::above(0.0, 0.5));
     s.most_levels = table.integer_or("levels", s.most_levels, 1, 100);
     if (limits.size() != 1)
-      document_.add(
-          {file_.string(), 0, "limits", "", "must be one [[limits]]: the event whose probability is asked for"});
+      document_.add({file_.string(), 0, "limits", "",
+                     "must be one [[limits]]: the event whose probability is asked for"});
     for (const Draft& d : drafts_)
       if (!d.variable.levels.empty()) d.table.fail("values", "must be a distribution in this design");
-    const double n = static_cast<double>(std::max(1, top_.integer_or("cases", 1, 1, static_cast<int>(case_limit))));
+    const double n =
+        static_cast<double>(std::max(1, top_.integer_or("cases", 1, 1, static_cast<int>(case_limit))));
     if (n * s.level_probability < 10.0 && top_.has("cases"))
       top_.fail("cases", fmt::format("must be at least {:.0f}: ten cases start the next level",
                                      std::ceil(10.0 / s.level_probability)));
@@ -450,15 +463,17 @@ class Reader {
       if (steps == 0) continue;
       ++refined;
       if (steps % width != 0)
-        d.table.fail("points", fmt::format("must be one more than a multiple of {}, the steps in a first cell of "
-                                           "[refine]: {}",
-                                           width, std::max(1, (steps + width / 2) / width) * width + 1));
+        d.table.fail("points",
+                     fmt::format("must be one more than a multiple of {}, the steps in a first cell of "
+                                 "[refine]: {}",
+                                 width, std::max(1, (steps + width / 2) / width) * width + 1));
     }
     if (refined == 0 || refined > RefinedGrid::most_axes)
       table.fail("", fmt::format("must have 1 to {} [[vary]] with range and points to refine, not {}",
                                  RefinedGrid::most_axes, refined));
     if (count > static_cast<double>(RefinedGrid::most_points))
-      table.fail("", fmt::format("must be of a grid of at most {} cases, not {:.3g}", RefinedGrid::most_points, count));
+      table.fail("", fmt::format("must be of a grid of at most {} cases, not {:.3g}",
+                                 RefinedGrid::most_points, count));
     return s;
   }
 
@@ -469,21 +484,26 @@ class Reader {
     const TomlNode* node = root_.find("histories");
     const TomlNode* columns = node->kind == TomlNode::Kind::table ? node->find("columns") : nullptr;
     if (columns != nullptr && columns->kind == TomlNode::Kind::text) {
-      if (table.text("columns") != "all") table.fail("columns", "must be \"all\" or an array of names of columns");
+      if (table.text("columns") != "all")
+        table.fail("columns", "must be \"all\" or an array of names of columns");
     } else if (columns == nullptr || columns->kind != TomlNode::Kind::array || columns->items.empty()) {
       static_cast<void>(table.has("columns"));
-      table.fail(columns != nullptr ? "columns" : "", "must have columns: \"all\" or an array of names of columns");
+      table.fail(columns != nullptr ? "columns" : "",
+                 "must have columns: \"all\" or an array of names of columns");
     } else {
       kept.columns = table.texts_or_none("columns");
       std::set<std::string> names;
       for (std::size_t k = 0; k < kept.columns.size(); ++k)
-        if (!names.insert(kept.columns[k]).second) table.fail_element("columns", k, "must not be named twice");
+        if (!names.insert(kept.columns[k]).second)
+          table.fail_element("columns", k, "must not be named twice");
     }
     kept.every = table.integer_or("every", 1, 1, 1000000);
     // A case's group has its values beside its number and its status.
     for (const Draft& d : drafts_) {
       if (d.variable.name == "case" || d.variable.name == "status")
-        d.table.fail("name", "must not be case or status where histories are kept: these are names of what a case has");
+        d.table.fail(
+            "name",
+            "must not be case or status where histories are kept: these are names of what a case has");
     }
     return kept;
   }

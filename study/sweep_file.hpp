@@ -61,7 +61,8 @@ struct SweepFile {
                                         const std::vector<base::Override>& overrides = {});
 
 /// What a case changes in its file: what all share, then its own values.
-[[nodiscard]] std::vector<base::Override> overrides_of(const SweepFile& sweep, const std::vector<double>& values);
+[[nodiscard]] std::vector<base::Override> overrides_of(const SweepFile& sweep,
+                                                       const std::vector<double>& values);
 
 inline constexpr double case_limit = 1e9;  ///< most cases of a sweep
 

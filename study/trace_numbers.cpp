@@ -29,7 +29,8 @@ double TraceNumbers::correlation_of(const std::string& one, const std::string& o
 
 TraceNumbers read_trace_numbers(const std::filesystem::path& file) {
   const json whole = json::parse(base::read_text(file, std::size_t{64} << 20u), nullptr, false);
-  if (!whole.is_object()) refuse(file, "", "is no JSON object; must be what snare trace or snare fit has written");
+  if (!whole.is_object())
+    refuse(file, "", "is no JSON object; must be what snare trace or snare fit has written");
   const std::string schema =
       whole.contains("schema") && whole["schema"].is_string() ? whole["schema"].get<std::string>() : "";
   const char* const part = schema == "snare-trace/1" ? "final" : schema == "snare-fit/1" ? "fit" : nullptr;
@@ -41,7 +42,8 @@ TraceNumbers read_trace_numbers(const std::filesystem::path& file) {
   std::vector<double> errors;
   for (const auto& [key, number] : whole[part]["parameters"].items()) {
     if (!number.is_object() || !number.contains("value") || !number["value"].is_number()) continue;
-    if (!number.contains("stderr") || !number["stderr"].is_number() || !(number["stderr"].get<double>() > 0.0))
+    if (!number.contains("stderr") || !number["stderr"].is_number() ||
+        !(number["stderr"].get<double>() > 0.0))
       continue;
     numbers.keys.push_back(key);
     numbers.values.push_back(number["value"].get<double>());

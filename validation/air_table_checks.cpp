@@ -41,21 +41,23 @@ MotionResult meeting(const std::filesystem::path& data, const std::string& model
 std::vector<Row> quadratic_law_rows(const std::filesystem::path& data) {
   std::vector<Row> rows;
   for (const double speed : {0.05, 0.1, 0.2}) {
-    const MotionResult r = meeting(data, "quadratic", speed, 0.0,
-                                   {"duration_s=1.0", "output_interval_s=1.0", "solver.relative_tolerance=1e-8",
-                                    "solver.body_position_tolerance_m=1e-11", "solver.body_velocity_tolerance_m_s=1e-8",
-                                    "solver.max_step_s=1e-3"});
+    const MotionResult r =
+        meeting(data, "quadratic", speed, 0.0,
+                {"duration_s=1.0", "output_interval_s=1.0", "solver.relative_tolerance=1e-8",
+                 "solver.body_position_tolerance_m=1e-11", "solver.body_velocity_tolerance_m_s=1e-8",
+                 "solver.max_step_s=1e-3"});
     double low = 0.0;
     double high = 50.0 * mm;
     for (int k = 0; k < 60; ++k) {
       const double d = 0.5 * (low + high);
-      (((law_at_90.a / 3.0 * d + law_at_90.b / 2.0) * d + law_at_90.c) * d < 0.5 * mass * speed * speed ? low : high) =
-          d;
+      (((law_at_90.a / 3.0 * d + law_at_90.b / 2.0) * d + law_at_90.c) * d < 0.5 * mass * speed * speed
+           ? low
+           : high) = d;
     }
     const double force = law_at_90.force(low);
     const std::string at = fmt::format("quadratic law head-on at {:g} m/s", speed);
-    rows.push_back({"air table", at + ", peak force", "N", "energy balance of Table 4", Kind::closed_form, force,
-                    r.peak_force[0], Limit::relative(5e-3)});
+    rows.push_back({"air table", at + ", peak force", "N", "energy balance of Table 4", Kind::closed_form,
+                    force, r.peak_force[0], Limit::relative(5e-3)});
     rows.push_back({"air table", at + ", impulse", "N s", "2 m v", Kind::closed_form, 2.0 * mass * speed,
                     r.impulse[0].y(), Limit::relative(1e-3)});
   }
@@ -68,19 +70,22 @@ std::vector<Row> law_beside_wire_rows(const std::filesystem::path& data) {
   for (const double speed : {0.05, 0.1, 0.2}) {
     for (const double offset : {0.0, 50.0 * mm, 100.0 * mm}) {
       // A slow body has little energy: of 0.05 m/s a share of 1e-3.
-      const std::vector<std::string> settings{
-          "duration_s=0.6", "output_interval_s=0.6", "solver.body_position_tolerance_m=1e-9",
-          "solver.body_velocity_tolerance_m_s=1e-7", fmt::format("solver.max_step_s={}", 0.2 * 6.75 * mm / speed)};
+      const std::vector<std::string> settings{"duration_s=0.6", "output_interval_s=0.6",
+                                              "solver.body_position_tolerance_m=1e-9",
+                                              "solver.body_velocity_tolerance_m_s=1e-7",
+                                              fmt::format("solver.max_step_s={}", 0.2 * 6.75 * mm / speed)};
       const MotionResult wire = meeting(data, "full", speed, offset, settings);
       const MotionResult law = meeting(data, "quadratic", speed, offset, settings);
-      const std::string at = fmt::format("{:g} m/s, probe {:g} mm off the centre of mass", speed, offset / mm);
+      const std::string at =
+          fmt::format("{:g} m/s, probe {:g} mm off the centre of mass", speed, offset / mm);
       rows.push_back({"air table", "impulse of law over full wire, " + at, "",
                       "Abiko et al., section 4.3: almost the same", Kind::published_measurement, 1.0,
                       law.impulse[0].y() / wire.impulse[0].y(), Limit::relative(0.1)});
-      rows.push_back(
-          {"air table", "full wire, integrator's energy over that of the impact, " + at, "", "conservation",
-           Kind::closed_form, 0.0, wire.energy.integrator / (0.5 * mass * speed * speed),
-           Limit::absolute(1e-3, "zero reference; the value is a share of the kinetic energy of the impact")});
+      rows.push_back({"air table", "full wire, integrator's energy over that of the impact, " + at, "",
+                      "conservation", Kind::closed_form, 0.0,
+                      wire.energy.integrator / (0.5 * mass * speed * speed),
+                      Limit::absolute(
+                          1e-3, "zero reference; the value is a share of the kinetic energy of the impact")});
     }
   }
   return rows;

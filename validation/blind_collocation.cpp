@@ -32,7 +32,8 @@ std::vector<double> graded(const BlindWire& wire, double begin, double end) {
   for (std::size_t i = 0; i < kSamples; ++i) {
     if (wire.damage_factor != 1.0) {
       for (const double at : {wire.damage_from, wire.damage_to}) {
-        extra += wire.intervals / 100.0 * h / kEdgeInterval * std::exp(-std::pow((middle(i) - at) / kEdge, 4));
+        extra +=
+            wire.intervals / 100.0 * h / kEdgeInterval * std::exp(-std::pow((middle(i) - at) / kEdge, 4));
       }
     }
     count[i + 1] = count[i + 1] * per_sample + extra;
@@ -98,7 +99,8 @@ double Collocation::coordinate(const Unknowns& z, std::size_t node) const {
 }
 
 Collocation::Point Collocation::evaluate(const Section& law, const Conditions& at, const Side& side, double S,
-                                         double fraction, const std::array<double, 2>& u, double guess) const {
+                                         double fraction, const std::array<double, 2>& u,
+                                         double guess) const {
   const double c = std::cos(u[0]);
   const double s = std::sin(u[0]);
   const double nx = side.n.x() - at.weight.x() * (S - side.feed);
@@ -170,7 +172,8 @@ void Collocation::assemble(const Section& law, const Conditions& at, const Unkno
       const double middle = 0.5 * (fraction + next);
       const std::array<double, 2> um{0.5 * (ua[0] + ub[0]) + 0.125 * h * (a.kappa - b.kappa),
                                      0.5 * (ua[1] + ub[1]) + 0.125 * h * (a.slope - b.slope)};
-      const Point m = evaluate(law, at, side, side.begin + side.length * middle, middle, um, guess_[2 * i + 1]);
+      const Point m =
+          evaluate(law, at, side, side.begin + side.length * middle, middle, um, guess_[2 * i + 1]);
       guess_[2 * i + 1] = m.kappa;
 
       const double h6 = h / 6.0;
@@ -427,8 +430,8 @@ double Collocation::apply(const Square& by_global, const Globals& residual, Unkn
     }
   }
   const double forces = std::max({force_scale_, z.n.norm(), z.f.norm()});
-  size = std::max(
-      {size, turn, dq.head<4>().lpNorm<Eigen::Infinity>() / forces, dq.tail<2>().lpNorm<Eigen::Infinity>() / length_});
+  size = std::max({size, turn, dq.head<4>().lpNorm<Eigen::Infinity>() / forces,
+                   dq.tail<2>().lpNorm<Eigen::Infinity>() / length_});
   if (!std::isfinite(size)) return -1.0;
   const double part = std::min(1.0, kTurn / std::max(turn, 1e-300));
   for (std::size_t i = 0; i < nodes(); ++i) {

@@ -19,8 +19,8 @@ struct Conditions {
   double slope = 0.0;                                ///< sliding: f . t over f . nu [-]
   double anchor = 0.0;                               ///< sticking: S_c + R th_c [m]
   double feed_limit = 0.0;                           ///< slipping: C, or the force along the chord [N]
-  double begin = 0.0;                                ///< not slipping: S_0, or where the left mount stands [m]
-  double rate = 0.0;                                 ///< relaxation time over time step [-]
+  double begin = 0.0;  ///< not slipping: S_0, or where the left mount stands [m]
+  double rate = 0.0;   ///< relaxation time over time step [-]
   Grip grip = Grip::smooth;
   bool touching = false;  ///< otherwise S_c follows the pusher without a force
   bool feeding = false;   ///< the left mount slips
@@ -72,10 +72,11 @@ class Collocation {
   struct Point;
   struct Side;
 
-  [[nodiscard]] Point evaluate(const Section& law, const Conditions& at, const Side& side, double S, double fraction,
-                               const std::array<double, 2>& u, double guess) const;
+  [[nodiscard]] Point evaluate(const Section& law, const Conditions& at, const Side& side, double S,
+                               double fraction, const std::array<double, 2>& u, double guess) const;
   void assemble(const Section& law, const Conditions& at, const Unknowns& z);
-  void close(const Section& law, const Conditions& at, const Unknowns& z, Square& by_global, Globals& residual);
+  void close(const Section& law, const Conditions& at, const Unknowns& z, Square& by_global,
+             Globals& residual);
   [[nodiscard]] bool eliminate();
   [[nodiscard]] double apply(const Square& by_global, const Globals& residual, Unknowns& z);
 
@@ -91,10 +92,10 @@ class Collocation {
   bool slides_ = false;  // of the conditions under way
   std::size_t left_ = 0;
   std::size_t right_ = 0;
-  std::vector<double> fraction_;                           // of the nodes, the contact's as the end of the left side
-  std::vector<double> guess_;                              // curvatures: node, middle, node, ...
-  std::vector<std::array<double, 7>> band_;                // row i holds columns i-2 ... i+4
-  std::vector<Column> columns_;                            // right-hand sides, then the solution
+  std::vector<double> fraction_;             // of the nodes, the contact's as the end of the left side
+  std::vector<double> guess_;                // curvatures: node, middle, node, ...
+  std::vector<std::array<double, 7>> band_;  // row i holds columns i-2 ... i+4
+  std::vector<Column> columns_;              // right-hand sides, then the solution
   std::vector<std::array<std::array<double, 2>, 4>> arm_;  // d(x_c, y_c, x_L - x_c, y_L - y_c)/d(th, M)
   std::array<Column, 4> arm_global_{};                     // the same by the globals; last: the value
   std::array<std::array<double, 6>, 6> close_node_{};      // of a global row: th_0, M_0, th_c, M_c, th_L, M_L

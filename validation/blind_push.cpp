@@ -25,8 +25,8 @@ using Eigen::Vector2d;
 
 void require(bool holds, const char* name, double value, const char* requirement) {
   if (holds) return;
-  throw std::invalid_argument(std::string("blind wire: ") + name + " = " + std::to_string(value) + ", must be " +
-                              requirement);
+  throw std::invalid_argument(std::string("blind wire: ") + name + " = " + std::to_string(value) +
+                              ", must be " + requirement);
 }
 
 void check(const BlindWire& w) {
@@ -86,8 +86,8 @@ enum Event : std::size_t { lose, touch, slide_forward, slide_back, pull_in, push
 using Margins = std::array<double, events_end>;
 
 constexpr double kMarginTolerance = 1e-9;
-constexpr double kNoMotion = 1e-8;      // of the way from reading to reading
-constexpr double kNoCreep = 1e-4;       // the same of a viscous wire, whose stress jumps with the pusher's speed
+constexpr double kNoMotion = 1e-8;  // of the way from reading to reading
+constexpr double kNoCreep = 1e-4;   // the same of a viscous wire, whose stress jumps with the pusher's speed
 constexpr double kSmallestPart = 1e-6;  // of the way from reading to reading
 constexpr double kTurningPart = 1.0 / 64.0;
 constexpr int kSwitches = 8;  // of alternatives in one place
@@ -125,15 +125,18 @@ class Push {
   [[nodiscard]] bool mount_turned(const State& trial) const;
   void change(Event event);
   void accept(State&& state, double duration);
-  [[nodiscard]] double rate(double duration) const { return duration > 0.0 ? wire_.relaxation_time / duration : 0.0; }
+  [[nodiscard]] double rate(double duration) const {
+    return duration > 0.0 ? wire_.relaxation_time / duration : 0.0;
+  }
 
   struct Found {
     Event event;
     double part;
     State state;
   };
-  [[nodiscard]] std::optional<Found> first_event(const State& trial, double from, double to, double travel_from,
-                                                 double travel_to, double duration, bool& failed);
+  [[nodiscard]] std::optional<Found> first_event(const State& trial, double from, double to,
+                                                 double travel_from, double travel_to, double duration,
+                                                 bool& failed);
 
   BlindWire wire_;
   Section law_;
@@ -162,7 +165,8 @@ Unknowns Push::buckled(double span, double& slack) const {
   const double wave = 2.0 * std::numbers::pi / L;
   const double stuck = wire_.strand_slip_curvature > 0.0 ? wire_.strand_extra_stiffness : 0.0;
   const double EI = wire_.bending_stiffness + stuck;
-  const double P = EI * wave * wave / (1.0 + 2.0 * std::numbers::pi * wire_.mount_rotational_compliance * EI / L);
+  const double P =
+      EI * wave * wave / (1.0 + 2.0 * std::numbers::pi * wire_.mount_rotational_compliance * EI / L);
   slack = L * (1.0 - P / wire_.axial_stiffness) - span - 2.0 * wire_.mount_axial_compliance * P;
   Unknowns z;
   z.contact = wire_.position * L / span;
@@ -172,8 +176,8 @@ Unknowns Push::buckled(double span, double& slack) const {
   z.n.x() = slack > 0.0 ? -P : stretched;
   for (std::size_t i = 0; i < z.section.size(); ++i) {
     const double S = solver_.coordinate(z, i);
-    z.section[i] = {amplitude * std::sin(wave * S),
-                    EI * amplitude * wave * std::cos(wave * S) + wire_.bending_stiffness * wire_.natural_curvature};
+    z.section[i] = {amplitude * std::sin(wave * S), EI * amplitude * wave * std::cos(wave * S) +
+                                                        wire_.bending_stiffness * wire_.natural_curvature};
   }
   return z;
 }
@@ -369,9 +373,10 @@ std::optional<Push::Found> Push::first_event(const State& trial, double from, do
       state = here_;
       b = from;
     } else {
-      for (int i = 0; i < 40 && std::abs(margin_b) > kMarginTolerance && b - a > 1e-10 && b - from > still; ++i) {
-        const double x =
-            std::clamp(b - margin_b * (b - a) / (margin_b - margin_a), a + 0.01 * (b - a), b - 0.01 * (b - a));
+      for (int i = 0; i < 40 && std::abs(margin_b) > kMarginTolerance && b - a > 1e-10 && b - from > still;
+           ++i) {
+        const double x = std::clamp(b - margin_b * (b - a) / (margin_b - margin_a), a + 0.01 * (b - a),
+                                    b - 0.01 * (b - a));
         const auto middle = attempt(travel_from + x * (travel_to - travel_from), (x - from) * duration);
         if (!middle) {
           failed = true;
@@ -416,7 +421,8 @@ void Push::advance(double travel, double duration) {
   };
   while (part < 1.0) {
     const double next = part + 1.001 * step > 1.0 ? 1.0 : part + step;
-    const auto trial = attempt(next == 1.0 ? travel : start + next * (travel - start), (next - part) * duration);
+    const auto trial =
+        attempt(next == 1.0 ? travel : start + next * (travel - start), (next - part) * duration);
     bool failed = !trial;
     const bool contact_stops = trial && contact_turned(*trial);
     const bool mount_stops = trial && mount_turned(*trial);
@@ -502,8 +508,8 @@ std::vector<BlindReading> blind_push(const BlindWire& wire, const std::vector<do
     return readings;
   }
   const bool timed = wire.relaxation_time > 0.0;
-  require(time.empty() ? !timed : time.size() == travel.size(), "number of times", static_cast<double>(time.size()),
-          "that of the readings; needed with a relaxation time");
+  require(time.empty() ? !timed : time.size() == travel.size(), "number of times",
+          static_cast<double>(time.size()), "that of the readings; needed with a relaxation time");
   for (std::size_t i = 0; i < travel.size(); ++i) {
     require(std::isfinite(travel[i]), "travel", travel[i], "finite");
     if (!timed) continue;

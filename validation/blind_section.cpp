@@ -162,7 +162,8 @@ Response Section::bend_fibres(double M, double S, double rate, double guess) con
     }
     double moment = factor * section + viscous * B * (kappa - old[0]);
     tangent = factor * section_tangent + viscous * B;
-    by_S = B_slope / bending_ * section + factor * memory_slope + viscous * (B_slope * (kappa - old[0]) - B * old[1]);
+    by_S = B_slope / bending_ * section + factor * memory_slope +
+           viscous * (B_slope * (kappa - old[0]) - B * old[1]);
     for (std::size_t j = 0; j < strand.size(); ++j) {
       const double arm = kappa - strand[j][0];
       moment += share * std::clamp(arm, -slip_[j], slip_[j]);

@@ -34,9 +34,10 @@ struct Push {
   double position, span, travel, speed;
 };
 // Slack 1 mm and 0.5 mm; pushed to where the wire is taut.
-constexpr Push pushes[] = {{40 * mm, 175 * mm, 2.4 * mm, 0.2 * mm},   {65 * mm, 175 * mm, 2.4 * mm, 2.0 * mm},
-                           {90 * mm, 175 * mm, 2.4 * mm, 0.2 * mm},   {40 * mm, 175.5 * mm, 2.4 * mm, 2.0 * mm},
-                           {65 * mm, 175.5 * mm, 2.4 * mm, 0.2 * mm}, {90 * mm, 175.5 * mm, 2.4 * mm, 2.0 * mm}};
+constexpr Push pushes[] = {
+    {40 * mm, 175 * mm, 2.4 * mm, 0.2 * mm},   {65 * mm, 175 * mm, 2.4 * mm, 2.0 * mm},
+    {90 * mm, 175 * mm, 2.4 * mm, 0.2 * mm},   {40 * mm, 175.5 * mm, 2.4 * mm, 2.0 * mm},
+    {65 * mm, 175.5 * mm, 2.4 * mm, 0.2 * mm}, {90 * mm, 175.5 * mm, 2.4 * mm, 2.0 * mm}};
 
 /// The pushes of a design.
 std::vector<Push> pushes_of(const BlindDesign& design) {
@@ -189,7 +190,8 @@ std::vector<double> read(const std::vector<Perturbation>& doses, const Push& p, 
   for (const BlindReading& r : blind_push(bench.wire, bench.travel, time))
     force.push_back(bench.gain * r.force + bench.offset);
   // Warming up: towards a limit within some tens of seconds.
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] += bench.drift * (1.0 - std::exp(-time[i] / h.drift_shape));
+  for (std::size_t i = 0; i < force.size(); ++i)
+    force[i] += bench.drift * (1.0 - std::exp(-time[i] / h.drift_shape));
   return force;
 }
 
@@ -199,7 +201,8 @@ Eigen::VectorXd read_all(const std::vector<Perturbation>& doses, const Hidden& h
   std::vector<double> all;
   const std::vector<Push> made = pushes_of(design);
   for (std::size_t k = 0; k < made.size(); ++k) {
-    const std::vector<double> one = read(doses, made[k], h.position_off[k], h, highest_tension, design.readings_a_leg);
+    const std::vector<double> one =
+        read(doses, made[k], h.position_off[k], h, highest_tension, design.readings_a_leg);
     all.insert(all.end(), one.begin(), one.end());
   }
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
@@ -418,7 +421,8 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
   experiment.title = fmt::format("blind set {}", seed);
   experiment.free = {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N"};
   if (design.length_deviation > 0.0) experiment.free.emplace_back("wire.length_mm");
-  const auto readings_a_push = static_cast<Eigen::Index>(force.size()) / static_cast<Eigen::Index>(made.size());
+  const auto readings_a_push =
+      static_cast<Eigen::Index>(force.size()) / static_cast<Eigen::Index>(made.size());
   const auto records = static_cast<int>(made.size()) * design.replicates;
   for (int number = 0; number < records; ++number) {
     const Push& p = made[static_cast<std::size_t>(number / design.replicates)];

@@ -26,10 +26,10 @@ void add_balance(const std::string& name, const ScenarioRun& run, double momentu
       name + ", momentum not accounted for over the visitor's", "", "conservation", Kind::closed_form, 0.0,
       run.result.momentum_error.norm() / momentum + run.usable(),
       Limit::absolute(1e-7, "zero reference; the value is a share of the momentum that the visitor brings")));
-  rows.push_back(
-      capture_row(name + ", integrator's energy over what is turned over", "", "conservation", Kind::closed_form, 0.0,
-                  run.result.energy.integrator / energy + run.usable(),
-                  Limit::absolute(1e-3, "zero reference; the value is a share of the energy that is turned over")));
+  rows.push_back(capture_row(
+      name + ", integrator's energy over what is turned over", "", "conservation", Kind::closed_form, 0.0,
+      run.result.energy.integrator / energy + run.usable(),
+      Limit::absolute(1e-3, "zero reference; the value is a share of the energy that is turned over")));
 }
 
 /// Where a function that rises passes zero.
@@ -46,9 +46,9 @@ double zero_of(const Function& f, double low, double high) {
 // Tangent to a shaft of radius r (with the wire's) at theta_t = 2 acos(r/R), a wire is 2 sqrt(R^2 - r^2) + r (theta - theta_t) long
 // when it is taut; its tension gives the angle of the ring, and n of them its torque, n T r.                        (M.24)
 std::vector<Row> tight_ring_rows(const std::filesystem::path& data) {
-  const ScenarioRun run =
-      run_of(data / "scenarios/snare_on_pin.toml",
-             {as_strings, "duration_s=2.0", "damping.axial_time_s=0.001", "snares[snare].ring.damping_Nms_rad=500.0"});
+  const ScenarioRun run = run_of(data / "scenarios/snare_on_pin.toml",
+                                 {as_strings, "duration_s=2.0", "damping.axial_time_s=0.001",
+                                  "snares[snare].ring.damping_Nms_rad=500.0"});
   constexpr double R = 0.1, r = 6.75e-3;
   const coupling::LawWire& wire = run.asked.motion.law_wires.front();
   double T = 0.0;
@@ -57,10 +57,11 @@ std::vector<Row> tight_ring_rows(const std::filesystem::path& data) {
   const double angle = tangent + (wire.length * (1.0 + T / wire.axial_stiffness) - straight) / r;
   const MotionSample::Arm& ring = run.last.arms.front();
   const std::string name = "three strings tight on a pin in the axis, ";
-  return {capture_row(name + "angle of the ring", "rad", "2 sqrt(R^2 - r^2) + r (theta - theta_t) = L (1 + T/EA)",
-                      Kind::closed_form, angle, ring.state.q[0] + run.usable(), Limit::relative(1e-4)),
-          capture_row(name + "torque of the ring", "N m", "3 T r", Kind::closed_form, 3.0 * T * r,
-                      std::abs(ring.joint_torque[0]) + run.usable(), Limit::relative(1e-3))};
+  return {
+      capture_row(name + "angle of the ring", "rad", "2 sqrt(R^2 - r^2) + r (theta - theta_t) = L (1 + T/EA)",
+                  Kind::closed_form, angle, ring.state.q[0] + run.usable(), Limit::relative(1e-4)),
+      capture_row(name + "torque of the ring", "N m", "3 T r", Kind::closed_form, 3.0 * T * r,
+                  std::abs(ring.joint_torque[0]) + run.usable(), Limit::relative(1e-3))};
 }
 
 // The shipped rigidizing by a snare that stands still and a stiff ball joint: the carriage's quintic by 125 mm in 2 s brings the plate
@@ -98,16 +99,18 @@ std::vector<Row> snare_capture_rows(const std::filesystem::path& data) {
     const coupling::WireUse &a = coarse.result.wires[i], &b = fine.result.wires[i];
     const double usable = coarse.usable() + fine.usable();
     rows.push_back(capture_row(wire + "peak force on the shaft", "N", source, Kind::convergence,
-                               fine.result.peak_force[i], coarse.result.peak_force[i] + usable, Limit::relative(1e-3)));
+                               fine.result.peak_force[i], coarse.result.peak_force[i] + usable,
+                               Limit::relative(1e-3)));
     rows.push_back(capture_row(wire + "peak tension", "N", source, Kind::convergence, b.peak_tension,
                                a.peak_tension + usable, Limit::relative(1e-3)));
     rows.push_back(capture_row(wire + "impulse on the shaft", "N s", source, Kind::convergence,
                                fine.result.impulse[i].norm(), coarse.result.impulse[i].norm() + usable,
                                Limit::relative(1e-3)));
-    rows.push_back(capture_row(wire + "first touch", "s", source, Kind::convergence, first_touch(fine.result, k),
-                               first_touch(coarse.result, k) + usable, Limit::relative(1e-5)));
-    rows.push_back(capture_row(wire + "tight", "s", source, Kind::convergence, b.tight_at, a.tight_at + usable,
-                               Limit::relative(5e-5)));
+    rows.push_back(capture_row(wire + "first touch", "s", source, Kind::convergence,
+                               first_touch(fine.result, k), first_touch(coarse.result, k) + usable,
+                               Limit::relative(1e-5)));
+    rows.push_back(capture_row(wire + "tight", "s", source, Kind::convergence, b.tight_at,
+                               a.tight_at + usable, Limit::relative(5e-5)));
   }
   const ScenarioRun minute = run_of(file, {as_strings, "duration_s=60.0", "output_interval_s=0.05"});
   const double brought = 16000.0 * 0.01;  // momentum of the visitor at the start [N s]
@@ -138,13 +141,14 @@ std::vector<Row> payload_rows(const std::filesystem::path& data) {
   const Eigen::Vector3d arm(0.1, 0.5, 0.0);
   std::vector<Row> rows;
   for (const std::string name : {"jemrms_capture", "jemrms_payload_on_wire", "jemrms_three_wires"}) {
-    const ScenarioRun run = run_of(data / "scenarios" / (name + ".toml"), {"solver.body_position_tolerance_m=1e-9",
-                                                                           "solver.body_velocity_tolerance_m_s=1e-7"});
+    const ScenarioRun run =
+        run_of(data / "scenarios" / (name + ".toml"),
+               {"solver.body_position_tolerance_m=1e-9", "solver.body_velocity_tolerance_m_s=1e-7"});
     add_balance(name, run, mass * speed, 0.5 * mass * speed * speed, rows);
-    rows.push_back(
-        capture_row(name + ", largest gap of welds and mounts", "m", "held", Kind::closed_form, 0.0,
-                    run.result.largest_drift + run.usable(),
-                    Limit::absolute(1e-6, "zero reference; a constraint between bodies that are metres apart")));
+    rows.push_back(capture_row(
+        name + ", largest gap of welds and mounts", "m", "held", Kind::closed_form, 0.0,
+        run.result.largest_drift + run.usable(),
+        Limit::absolute(1e-6, "zero reference; a constraint between bodies that are metres apart")));
     if (name != "jemrms_capture") continue;  // held by the arm; met once more when it has turned
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& of_contact : run.result.impulse) impulse -= of_contact;  // on the payload
@@ -168,11 +172,11 @@ std::vector<Row> visitor_rows(const std::filesystem::path& data) {
                                        "solver.body_velocity_tolerance_m_s=1e-9"};
   add("rigidizing a visitor of 1.3 t", run_of(rigidize, light), 1300.0 * speed);
   std::vector<std::string> heavy = light;
-  heavy.insert(heavy.end(),
-               {"bodies[visitor].mass_kg=13000.0", "bodies[visitor].inertia_kg_m2=[20000.0,20000.0,10000.0]"});
+  heavy.insert(heavy.end(), {"bodies[visitor].mass_kg=13000.0",
+                             "bodies[visitor].inertia_kg_m2=[20000.0,20000.0,10000.0]"});
   add("rigidizing a visitor of 13 t", run_of(rigidize, heavy), 13000.0 * speed);
-  add("rigidizing a visitor of 1.3 t by computed wires", run_of(data / "scenarios/ssrms_rigidize_wires.toml", {}),
-      1300.0 * speed);
+  add("rigidizing a visitor of 1.3 t by computed wires",
+      run_of(data / "scenarios/ssrms_rigidize_wires.toml", {}), 1300.0 * speed);
   add("capture of 16 t, the attachment gives",
       run_of(data / "scenarios/ssrms_htv_attachment.toml", {"snares[ee::snare].wire.model=\"stretched\""}),
       16000.0 * 0.01);

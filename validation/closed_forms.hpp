@@ -17,7 +17,8 @@ namespace snare::validation {
 ///   F = EA d^3/(2 l) (1/s + 1/(l-s))^2  [N],
 /// from the elongation d^2/2 (1/s + 1/(l-s)), tension EA/l times it. Leading order in d/s; the load slides
 /// freely, so the tension is the same on both sides. axial_stiffness: EA [N].
-[[nodiscard]] double unstretched_wire_force(double axial_stiffness, double span, double position, double deflection);
+[[nodiscard]] double unstretched_wire_force(double axial_stiffness, double span, double position,
+                                            double deflection);
 
 /// Three-point bending of a beam on two supports, load at s:  F/d = 3 EI l/(s^2 (l-s)^2)  [N/m].
 [[nodiscard]] double three_point_stiffness(double bending_stiffness, double span, double position);

@@ -71,9 +71,10 @@ std::vector<Row> hunt_crossley_rows() {
       const double expected = low / av;  // a u over a v
       const double duration = pi * std::sqrt(ball_mass / 3e4);
       const Strike s = strike(coupling::power_law(k, p, av / speed * k, 1.0), speed, duration);
-      rows.push_back({"contact laws", fmt::format("Hunt-Crossley, p = {:g}, c v/k = {:g}, restitution", p, av), "",
-                      "a v - ln(1 + a v) = -a u - ln(1 - a u)", Kind::closed_form, expected, s.speed_after / speed,
-                      Limit::relative(1e-4)});
+      rows.push_back({"contact laws",
+                      fmt::format("Hunt-Crossley, p = {:g}, c v/k = {:g}, restitution", p, av), "",
+                      "a v - ln(1 + a v) = -a u - ln(1 - a u)", Kind::closed_form, expected,
+                      s.speed_after / speed, Limit::relative(1e-4)});
     }
   }
   return rows;
@@ -91,8 +92,8 @@ std::vector<Row> dashpot_rows() {
     const double angle = std::atan2(2.0 * b * w, w * w - b * b);  // in (0, pi) for every ratio below 1
     const double expected = std::exp(-b / w * (pi - angle));
     const Strike s = strike(coupling::spring_dashpot(k, 2.0 * b * ball_mass), speed, pi / w0);
-    rows.push_back({"contact laws", fmt::format("spring and dashpot, {:g} of critical, restitution", ratio), "",
-                    "Schwager, Poeschel 2007", Kind::closed_form, expected, s.speed_after / speed,
+    rows.push_back({"contact laws", fmt::format("spring and dashpot, {:g} of critical, restitution", ratio),
+                    "", "Schwager, Poeschel 2007", Kind::closed_form, expected, s.speed_after / speed,
                     Limit::relative(1e-4)});
   }
   return rows;
@@ -108,8 +109,8 @@ std::vector<Row> hertz_rows() {
   const Strike s = strike(coupling::power_law(k, 1.5, 0.0, 1.0), speed, factor * depth / speed);
   return {{"contact laws", "Hertz, duration of the contact", "s", "2.9432 d_max/v", Kind::closed_form,
            factor * depth / speed, s.duration, Limit::relative(1e-4)},
-          {"contact laws", "Hertz, peak force", "N", "K d_max^(3/2)", Kind::closed_form, k * std::pow(depth, 1.5),
-           s.peak, Limit::relative(1e-4)},
+          {"contact laws", "Hertz, peak force", "N", "K d_max^(3/2)", Kind::closed_form,
+           k * std::pow(depth, 1.5), s.peak, Limit::relative(1e-4)},
           {"contact laws", "Hertz, restitution", "", "elastic", Kind::closed_form, 1.0, s.speed_after / speed,
            Limit::relative(1e-5)}};
 }

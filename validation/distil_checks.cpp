@@ -60,12 +60,13 @@ std::vector<Row> table_rows() {
     worst = std::max(worst, std::abs(table - curve.points.back().force));
   }
   const double range = built.loading_error.force_range;
-  return {{"distilled laws", "table of 20 x 9 x 5 at 200 random places, error over the range of the force", "",
-           "full wire, solved anew on a finer mesh", Kind::convergence, 0.0, worst / range,
-           Limit::absolute(0.005, "zero reference; the value is a share of the range of the force")},
-          {"distilled laws", "the same over the bound that the table states", "",
-           "full wire, solved anew on a finer mesh", Kind::convergence, 0.0, worst / built.loading_error.bound,
-           Limit::absolute(1.0, "an upper bound; the value is a share of the bound that the table states")}};
+  return {
+      {"distilled laws", "table of 20 x 9 x 5 at 200 random places, error over the range of the force", "",
+       "full wire, solved anew on a finer mesh", Kind::convergence, 0.0, worst / range,
+       Limit::absolute(0.005, "zero reference; the value is a share of the range of the force")},
+      {"distilled laws", "the same over the bound that the table states", "",
+       "full wire, solved anew on a finer mesh", Kind::convergence, 0.0, worst / built.loading_error.bound,
+       Limit::absolute(1.0, "an upper bound; the value is a share of the bound that the table states")}};
 }
 
 std::vector<Row> closed_form_rows() {
@@ -78,13 +79,14 @@ std::vector<Row> closed_form_rows() {
   const std::string honda = "Honda et al., eqs 1 and 2, evaluated by hand";
   rows.push_back({"distilled laws", "stretched wire, K_contact", "N/m", honda, Kind::closed_form, 60810.0,
                   linear->stiffness(p, 1e-3), Limit::relative(1e-4)});  // printed to four digits
-  rows.push_back({"distilled laws", "stretched wire, exact over linear at 1 mm", "", honda, Kind::closed_form, 1.068,
-                  exact->force(p, 1e-3) / linear->force(p, 1e-3), Limit::relative(4.6e-4)});
-  rows.push_back({"distilled laws", "stretched wire, exact over linear at 10 mm", "", honda, Kind::closed_form, 1.74,
-                  exact->force(p, 1e-2) / linear->force(p, 1e-2), Limit::relative(2.8e-3)});
+  rows.push_back({"distilled laws", "stretched wire, exact over linear at 1 mm", "", honda, Kind::closed_form,
+                  1.068, exact->force(p, 1e-3) / linear->force(p, 1e-3), Limit::relative(4.6e-4)});
+  rows.push_back({"distilled laws", "stretched wire, exact over linear at 10 mm", "", honda,
+                  Kind::closed_form, 1.74, exact->force(p, 1e-2) / linear->force(p, 1e-2),
+                  Limit::relative(2.8e-3)});
   for (const double s : {0.04, 0.065, 0.09}) {
-    rows.push_back({"distilled laws", fmt::format("tensioned clamped wire, 50 N, s = {:g} mm", 1e3 * s), "N/m",
-                    "w'''' - m^2 w'' = 0 on both sides, solved by itself", Kind::closed_form,
+    rows.push_back({"distilled laws", fmt::format("tensioned clamped wire, 50 N, s = {:g} mm", 1e3 * s),
+                    "N/m", "w'''' - m^2 w'' = 0 on both sides, solved by itself", Kind::closed_form,
                     tensioned_clamped_stiffness(0.04796, 50.0, 0.175, s),
                     coupling::tensioned_stiffness(0.04796, 50.0, 0.175, s).value, Limit::relative(1e-9)});
   }
@@ -102,8 +104,8 @@ std::vector<Row> snare_rows() {
     return path.points.back().force.dot(u) / u.squaredNorm();
   };
   const double x = stiffness({1e-5, 0.0, 0.0});
-  rows.push_back({group, "stiffness in y over that in x", "", "three wires at 120 degrees", Kind::closed_form, 1.0,
-                  stiffness({0.0, 1e-5, 0.0}) / x, Limit::relative(0.01)});
+  rows.push_back({group, "stiffness in y over that in x", "", "three wires at 120 degrees", Kind::closed_form,
+                  1.0, stiffness({0.0, 1e-5, 0.0}) / x, Limit::relative(0.01)});
   for (const int axis : {0, 1, 2}) {
     const char* name = axis == 0 ? "x" : axis == 1 ? "y" : "z";
     const reduction::JointCycle cycle = reduction::cycle_snare(snare, axis, axis == 2 ? 0.010 : 0.003, 120);
@@ -116,19 +118,22 @@ std::vector<Row> snare_rows() {
     if (axis < 2) {
       rows.push_back({group, fmt::format("{}: R^2 of a straight line, linear", name), "", paper,
                       Kind::published_measurement, 1.0, cycle.linear_r2, Limit::relative(0.05)});
-      rows.push_back({group, fmt::format("{}: half width of the loop over the force, slight hysteresis", name), "",
-                      paper, Kind::published_measurement, 0.0, width,
-                      Limit::absolute(0.1, "an upper bound for \"slight\"; the value is a share of the force")});
+      rows.push_back(
+          {group, fmt::format("{}: half width of the loop over the force, slight hysteresis", name), "",
+           paper, Kind::published_measurement, 0.0, width,
+           Limit::absolute(0.1, "an upper bound for \"slight\"; the value is a share of the force")});
     } else {
-      rows.push_back({group, "z: R^2 of a straight line, not linear", "", paper, Kind::published_measurement, 0.0,
-                      cycle.linear_r2,
-                      Limit::absolute(0.8, "an upper bound for \"not linear\"; R^2 is a share of the variance")});
+      rows.push_back(
+          {group, "z: R^2 of a straight line, not linear", "", paper, Kind::published_measurement, 0.0,
+           cycle.linear_r2,
+           Limit::absolute(0.8, "an upper bound for \"not linear\"; R^2 is a share of the variance")});
       rows.push_back({group, "z: half width of the loop over the force, clear hysteresis", "", paper,
                       Kind::published_measurement, 0.5, width, Limit::relative(0.2)});
       rows.push_back(
-          {group, "z: rms error of constant friction over the force", "", paper, Kind::published_measurement, 0.0,
-           cycle.rms_error / cycle.force_range,
-           Limit::absolute(0.05, "an upper bound for \"constant friction\"; the value is a share of the force")});
+          {group, "z: rms error of constant friction over the force", "", paper, Kind::published_measurement,
+           0.0, cycle.rms_error / cycle.force_range,
+           Limit::absolute(0.05,
+                           "an upper bound for \"constant friction\"; the value is a share of the force")});
     }
   }
   return rows;

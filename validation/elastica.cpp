@@ -50,7 +50,9 @@ CantileverTip cantilever_tip(double bending_stiffness, double length, double for
   const double root = std::sqrt(force * length * length / bending_stiffness);
   const auto amplitude = [](double k) { return std::asin(1.0 / (k * std::numbers::sqrt2)); };
   const double k = increasing_root(
-      [&](double modulus) { return std::comp_ellint_1(modulus) - std::ellint_1(modulus, amplitude(modulus)) - root; },
+      [&](double modulus) {
+        return std::comp_ellint_1(modulus) - std::ellint_1(modulus, amplitude(modulus)) - root;
+      },
       1.0 / std::numbers::sqrt2 + 1e-15, 1.0 - 1e-15);
   const double sine = 2.0 * k * k - 1.0;
   const double missing = std::comp_ellint_2(k) - std::ellint_2(k, amplitude(k));

@@ -100,7 +100,8 @@ Bundle integrate(const ElasticaLaw& law, const Bundle& start, ElasticaForce n, d
       row[static_cast<std::size_t>(j)] = value;
       value = better;
     }
-    const bool settled = k > 2 && relative_difference(value, row[static_cast<std::size_t>(k - 1)]) < kTolerance;
+    const bool settled =
+        k > 2 && relative_difference(value, row[static_cast<std::size_t>(k - 1)]) < kTolerance;
     row[static_cast<std::size_t>(k)] = value;
     if (settled) return value;
   }
@@ -120,11 +121,12 @@ SectionForces section_forces(ElasticaForce force, double angle) {
 ElasticaSection section_rate(const ElasticaLaw& law, const ElasticaSection& section, ElasticaForce force) {
   const auto [tension, shear] = section_forces(force, section.angle);
   const double stretch = 1.0 + law.compliance * tension;
-  return {stretch * std::cos(section.angle), stretch * std::sin(section.angle), law.natural_curvature + section.moment,
-          -stretch * shear};
+  return {stretch * std::cos(section.angle), stretch * std::sin(section.angle),
+          law.natural_curvature + section.moment, -stretch * shear};
 }
 
-ElasticaFlow elastica_flow(const ElasticaLaw& law, const ElasticaSection& start, ElasticaForce force, double length) {
+ElasticaFlow elastica_flow(const ElasticaLaw& law, const ElasticaSection& start, ElasticaForce force,
+                           double length) {
   Bundle bundle{start.x, start.y, start.angle, start.moment};
   bundle[4 + 2] = 1.0;      // d angle / d angle
   bundle[4 + 4 + 3] = 1.0;  // d moment / d moment

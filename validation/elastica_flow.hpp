@@ -42,7 +42,8 @@ struct SectionForces {
 [[nodiscard]] SectionForces section_forces(ElasticaForce force, double angle);
 
 /// Derivative of the section with respect to S: the right-hand side of the equations above.
-[[nodiscard]] ElasticaSection section_rate(const ElasticaLaw& law, const ElasticaSection& section, ElasticaForce force);
+[[nodiscard]] ElasticaSection section_rate(const ElasticaLaw& law, const ElasticaSection& section,
+                                           ElasticaForce force);
 
 /// The section a piece of rod further on, and how it depends on where it started.
 struct ElasticaFlow {
@@ -56,7 +57,7 @@ struct ElasticaFlow {
 /// Integrates over one piece of unstressed length `length` [L], any sign, by the Gragg-Bulirsch-Stoer
 /// extrapolation method (Hairer, Norsett and Wanner 1993, II.9), together with the variational
 /// equations.  A piece that does not reach a relative 1e-14 is halved.
-[[nodiscard]] ElasticaFlow elastica_flow(const ElasticaLaw& law, const ElasticaSection& start, ElasticaForce force,
-                                         double length);
+[[nodiscard]] ElasticaFlow elastica_flow(const ElasticaLaw& law, const ElasticaSection& start,
+                                         ElasticaForce force, double length);
 
 }  // namespace snare::validation

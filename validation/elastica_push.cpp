@@ -45,7 +45,8 @@ void check(const ElasticaPush& p) {
     require(p.position > 0.0 && p.position < p.span, "position", p.position, "in (0, span)");
   }
   require(p.radius >= 0.0 && std::isfinite(p.radius), "radius", p.radius, "finite and >= 0");
-  require(p.contact == ElasticaContact::sliding || p.radius == 0.0, "radius", p.radius, "0 unless the contact slides");
+  require(p.contact == ElasticaContact::sliding || p.radius == 0.0, "radius", p.radius,
+          "0 unless the contact slides");
   require(std::isfinite(p.friction_slope), "friction_slope", p.friction_slope, "finite");
   require(p.pieces_per_side >= 2, "pieces_per_side", p.pieces_per_side, ">= 2");
 }
@@ -150,7 +151,8 @@ std::vector<ElasticaState> Path::through_folds(double step, int count) {
   const Index n = shooting_.size(false);
   // Length along the path: pusher's height, and mean square of the sections' y and angle.
   VectorXd weight = VectorXd::Zero(n);
-  for (Index i = 0; i < 2 * shooting_.pieces(); ++i) weight[4 * i + 1] = weight[4 * i + 2] = 0.5 / shooting_.pieces();
+  for (Index i = 0; i < 2 * shooting_.pieces(); ++i)
+    weight[4 * i + 1] = weight[4 * i + 2] = 0.5 / shooting_.pieces();
   const Index at = shooting_.height(false);
   weight[at] = 1.0;
   VectorXd direction = VectorXd::Zero(n);
@@ -215,7 +217,8 @@ ElasticaState Path::describe() const {
   const double right_begin = z[shooting_.end(wrapped)];
   const double right_piece = (1.0 - right_begin) / m;
   for (Index i = 0; i < m; ++i) add(static_cast<double>(i) * left_piece, Shooting::section(z, i), left);
-  add(z[shooting_.begin()], elastica_flow(shooting_.law(), Shooting::section(z, m - 1), left, left_piece).end, left);
+  add(z[shooting_.begin()], elastica_flow(shooting_.law(), Shooting::section(z, m - 1), left, left_piece).end,
+      left);
   state.contact_x = state.shape.back().x;
   state.contact_y = state.shape.back().y;
   for (Index i = 0; i < m; ++i) {

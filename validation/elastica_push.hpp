@@ -58,11 +58,13 @@ struct ElasticaState {
 
 /// The same at several travels [m], in the order given, each continued from the one before. Ends with the
 /// first state that could not be reached.
-[[nodiscard]] std::vector<ElasticaState> push_path(const ElasticaPush& problem, const std::vector<double>& travels);
+[[nodiscard]] std::vector<ElasticaState> push_path(const ElasticaPush& problem,
+                                                   const std::vector<double>& travels);
 
 /// The path by pseudo arc length from the first touch, through folds in travel. Point contact only.
 /// step: length along the path, > 0, in the norm of the pusher's height over L and the root mean squares of the
 /// sections' heights over L and angles [rad]; count: states, the first touch included.
-[[nodiscard]] std::vector<ElasticaState> push_through_folds(const ElasticaPush& problem, double step, int count);
+[[nodiscard]] std::vector<ElasticaState> push_through_folds(const ElasticaPush& problem, double step,
+                                                            int count);
 
 }  // namespace snare::validation

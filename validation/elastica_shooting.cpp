@@ -203,7 +203,8 @@ SolveReport Shooting::solve(VectorXd& z, bool wrapped, const Demand& demand) con
       const double arc_end = trial[end(wrapped)];
       if (arc_begin > 0.0 && arc_end < 1.0) {
         sys = assemble(trial, wrapped, demand);
-        if (near || sys.residual.norm() < (1.0 - 0.1 * fraction) * report.residual_norm * std::sqrt(z.size()) ||
+        if (near ||
+            sys.residual.norm() < (1.0 - 0.1 * fraction) * report.residual_norm * std::sqrt(z.size()) ||
             relative < 1e-8) {
           break;
         }

@@ -60,8 +60,8 @@ struct Watch {
 
 /// What a pulse makes of a motion from a state on, every column a time: half the difference of a pulse and its opposite, without the terms
 /// that go with the square of the pulse. With them the swing of one period a record, damped by 8.5e-4, appears damped by 3.3e-3.
-MatrixXd answer(const scenario::NamedMotion& asked, const coupling::MotionState& state, coupling::FrameLoad load,
-                const Watch& watch) {
+MatrixXd answer(const scenario::NamedMotion& asked, const coupling::MotionState& state,
+                coupling::FrameLoad load, const Watch& watch) {
   coupling::MotionOptions options = asked.options;
   options.output_interval = watch.every;
   options.duration = state.time + watch.to;
@@ -110,8 +110,9 @@ constexpr Agreement linear{1e-4, 1e-3};
 constexpr Agreement drifting{0.01, 0.05};
 
 /// A row for each of these frequencies [Hz] by eigenvalues: that of the answer which is nearest.
-void compare(const std::string& what, const std::vector<coupling::MotionMode>& modes, double lowest, double highest,
-             const MatrixXd& signals, const Watch& watch, const Agreement& agreement, std::vector<Row>& rows) {
+void compare(const std::string& what, const std::vector<coupling::MotionMode>& modes, double lowest,
+             double highest, const MatrixXd& signals, const Watch& watch, const Agreement& agreement,
+             std::vector<Row>& rows) {
   Eigen::VectorXcd found;
   if (signals.size() > 0) found = exponents(signals, watch.every, watch.keep);
   for (const coupling::MotionMode& m : modes) {
@@ -121,11 +122,14 @@ void compare(const std::string& what, const std::vector<coupling::MotionMode>& m
     std::complex<double> nearest(not_computed, not_computed);
     for (const std::complex<double>& lambda : found)
       if (!(std::abs(nearest - expected) <= std::abs(lambda - expected))) nearest = lambda;
-    const std::string name = fmt::format("{}, {} swings: ", what, m.shares.empty() ? "all" : m.shares[0].first);
-    rows.push_back(frequency_row(name + "frequency", "Hz", "a small disturbance, simulated", Kind::convergence,
-                                 std::abs(nearest) / two_pi, m.frequency, Limit::relative(agreement.frequency)));
-    rows.push_back(frequency_row(name + "damping ratio", "", "a small disturbance, simulated", Kind::convergence,
-                                 -nearest.real() / std::abs(nearest), m.damping, Limit::relative(agreement.damping)));
+    const std::string name =
+        fmt::format("{}, {} swings: ", what, m.shares.empty() ? "all" : m.shares[0].first);
+    rows.push_back(frequency_row(name + "frequency", "Hz", "a small disturbance, simulated",
+                                 Kind::convergence, std::abs(nearest) / two_pi, m.frequency,
+                                 Limit::relative(agreement.frequency)));
+    rows.push_back(frequency_row(name + "damping ratio", "", "a small disturbance, simulated",
+                                 Kind::convergence, -nearest.real() / std::abs(nearest), m.damping,
+                                 Limit::relative(agreement.damping)));
   }
 }
 
@@ -146,36 +150,38 @@ int body_called(const coupling::Motion& motion, const std::string& name) {
   return static_cast<int>(found - motion.bodies.begin());
 }
 
-coupling::FrameLoad push_on_body(const coupling::Motion& motion, const std::string& name, const Eigen::Vector3d& force,
-                                 const Eigen::Vector3d& moment) {
+coupling::FrameLoad push_on_body(const coupling::Motion& motion, const std::string& name,
+                                 const Eigen::Vector3d& force, const Eigen::Vector3d& moment) {
   const int index = body_called(motion, name);
-  return push_on({coupling::MotionCarrier::Kind::body, index, 0}, scenario::pose_of(motion.bodies[at(index)].start),
-                 force, moment);
+  return push_on({coupling::MotionCarrier::Kind::body, index, 0},
+                 scenario::pose_of(motion.bodies[at(index)].start), force, moment);
 }
 
 }  // namespace
 
 std::vector<Row> held_frequency_rows(const std::filesystem::path& data) {
-  const ScenarioRun run =
-      run_of(data / "scenarios/ssrms_htv_held.toml", {"duration_s=1.0", "loads[thruster].moment_Nm=[0.0,0.0,0.0]"});
+  const ScenarioRun run = run_of(data / "scenarios/ssrms_htv_held.toml",
+                                 {"duration_s=1.0", "loads[thruster].moment_Nm=[0.0,0.0,0.0]"});
   const std::vector<coupling::MotionMode> modes =
       coupling::small_motions_at(run.asked.motion, run.asked.options, run.result.last).modes;
-  Watch watch{0.1, 0.5, 20.5, 0.1, 1e-5, [](const MotionSample& s) -> VectorXd { return s.arms[0].state.q.tail<7>(); }};
+  Watch watch{0.1, 0.5,  20.5,
+              0.1, 1e-5, [](const MotionSample& s) -> VectorXd { return s.arms[0].state.q.tail<7>(); }};
   const MatrixXd signals =
       answer(run.asked, run.result.last,
              push_on_body(run.asked.motion, "htv", {200.0, 150.0, 100.0}, {5000.0, 3000.0, -4000.0}), watch);
   std::vector<Row> rows;
   compare("visitor of 16 t held on the arm", modes, 0.01, 1.0, signals, watch, linear, rows);
   if (!run.result.report.usable() || rows.empty())
-    rows.push_back(frequency_row("visitor of 16 t held on the arm, modes below 1 Hz", "", "six freedoms of the visitor",
-                                 Kind::closed_form, 6.0, not_computed, Limit::relative(0.1)));
+    rows.push_back(frequency_row("visitor of 16 t held on the arm, modes below 1 Hz", "",
+                                 "six freedoms of the visitor", Kind::closed_form, 6.0, not_computed,
+                                 Limit::relative(0.1)));
   return rows;
 }
 
 // Eight seconds into the shipped capture: tight, the arm limp.
 std::vector<Row> capture_frequency_rows(const std::filesystem::path& data) {
-  const ScenarioRun run =
-      run_of(data / "scenarios/ssrms_htv_capture.toml", {as_strings, "duration_s=8.0", "output_interval_s=0.05"});
+  const ScenarioRun run = run_of(data / "scenarios/ssrms_htv_capture.toml",
+                                 {as_strings, "duration_s=8.0", "output_interval_s=0.05"});
   const std::vector<coupling::MotionMode> modes =
       coupling::small_motions_at(run.asked.motion, run.asked.options, run.result.last).modes;
   std::vector<Row> rows;
@@ -186,14 +192,15 @@ std::vector<Row> capture_frequency_rows(const std::filesystem::path& data) {
                  push_on_body(run.asked.motion, "htv", {50.0, 50.0, 50.0}, {500.0, 300.0, -400.0}), slow),
           slow, drifting, rows);
   const coupling::MotionArm& arm = run.asked.motion.arms[0];
-  const coupling::MotionCarrier ring{coupling::MotionCarrier::Kind::arm, 0, arm.arm.tree.find_frame("snare::turning")};
+  const coupling::MotionCarrier ring{coupling::MotionCarrier::Kind::arm, 0,
+                                     arm.arm.tree.find_frame("snare::turning")};
   const Watch fast{5e-4, 1e-3, 1.1e-2, 1e-4, 1e-5, [](const MotionSample& s) -> VectorXd {
                      const multibody::ArmState& a = s.arms[0].state;
                      return (VectorXd(2) << a.q[a.q.size() - 1], a.v[a.v.size() - 1]).finished();
                    }};
   compare("visitor of 16 t in strings", modes, 200.0, 600.0,
-          answer(run.asked, run.result.last, push_on(ring, {}, {0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}), fast), fast, drifting,
-          rows);
+          answer(run.asked, run.result.last, push_on(ring, {}, {0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}), fast), fast,
+          drifting, rows);
   return rows;
 }
 
@@ -223,11 +230,12 @@ std::vector<Row> bushing_frequency_rows(const std::filesystem::path& data) {
   const std::string name = "roll of a held visitor of 16 t, joints of ";
   return {frequency_row(name + "1e12 N m/rad", "Hz", "(K_GF/I)^1/2/(2 pi)", Kind::closed_form,
                         std::sqrt(K / I) / two_pi, roll(1e12, K), Limit::relative(1e-3)),
-          frequency_row(name + "1e12 N m/rad: d ln f/d ln K_GF", "", "the bushing alone", Kind::closed_form, 0.5,
-                        sensitivity(1e12), Limit::relative(2e-3)),
-          frequency_row(name + "1e6 N m/rad: d ln f/d ln K_GF", "", "K_GF stiff beside the joints", Kind::closed_form,
-                        0.0, sensitivity(1e6),
-                        Limit::absolute(0.01, "zero reference; the exponent is 1/2 where the bushing gives alone"))};
+          frequency_row(name + "1e12 N m/rad: d ln f/d ln K_GF", "", "the bushing alone", Kind::closed_form,
+                        0.5, sensitivity(1e12), Limit::relative(2e-3)),
+          frequency_row(
+              name + "1e6 N m/rad: d ln f/d ln K_GF", "", "K_GF stiff beside the joints", Kind::closed_form,
+              0.0, sensitivity(1e6),
+              Limit::absolute(0.01, "zero reference; the exponent is 1/2 where the bushing gives alone"))};
 }
 
 std::vector<Check> frequency_checks(const std::filesystem::path& data) {

@@ -157,8 +157,8 @@ std::vector<Row> stopping_block_rows() {
                   std::abs(t.late - t.early),
                   Limit::absolute(1e-9, "zero reference; a thousandth of the displacement of the bristle")});
   const double energy = 0.5 * speed * speed;
-  rows.push_back({"friction", "and has turned into heat, of its kinetic energy", "", "conservation", Kind::closed_form,
-                  1.0, t.result.energy.dissipated / energy, Limit::relative(1e-3)});
+  rows.push_back({"friction", "and has turned into heat, of its kinetic energy", "", "conservation",
+                  Kind::closed_form, 1.0, t.result.energy.dissipated / energy, Limit::relative(1e-3)});
   return rows;
 }
 
@@ -211,7 +211,8 @@ std::vector<Row> stick_slip_rows() {
   MotionOptions options = accurate(3.6 * period + fixed * g / stiffness / belt);
   options.output_interval = period / 1000.0;
   options.max_step =
-      period / 2000.0;  // in the stick time alone moves, which the integrals see and the error of a step does not
+      period /
+      2000.0;  // in the stick time alone moves, which the integrals see and the error of a step does not
   double least = 1e9;
   double most = -1e9;
   double heat = 0.0;
@@ -241,8 +242,8 @@ std::vector<Row> stick_slip_rows() {
   const double nothing = not_computed;
   return {{"friction", "mass on a belt, period of stick and slip", "s", "piecewise linear oscillator",
            Kind::closed_form, period, fine ? (slips[3] - slips[0]) / 3.0 : nothing, Limit::relative(1e-3)},
-          {"friction", "mass on a belt, amplitude", "m", "piecewise linear oscillator", Kind::closed_form, amplitude,
-           fine ? 0.5 * (most - least) : nothing, Limit::relative(1e-3)},
+          {"friction", "mass on a belt, amplitude", "m", "piecewise linear oscillator", Kind::closed_form,
+           amplitude, fine ? 0.5 * (most - least) : nothing, Limit::relative(1e-3)},
           {"friction", "mass on a belt, heat", "J", "mu_d N times the way slid", Kind::closed_form,
            sliding * g * travel, fine ? heat : nothing, Limit::relative(1e-3)},
           {"friction", "mass on a belt, heat", "J", "area of force over way", Kind::closed_form, area,
@@ -311,7 +312,8 @@ std::vector<Row> reversed_push(coupling::PushProblem test, const std::string& na
     const bool loading = k <= stations.size();
     double force = not_computed;
     for (std::size_t i = 1; i < travels.size(); ++i) {
-      const bool passes = loading ? travels[i - 1] < d && travels[i] >= d : travels[i - 1] > d && travels[i] <= d;
+      const bool passes =
+          loading ? travels[i - 1] < d && travels[i] >= d : travels[i - 1] > d && travels[i] <= d;
       if (!passes) continue;
       const double share = (d - travels[i - 1]) / (travels[i] - travels[i - 1]);
       force = forces[i - 1] + share * (forces[i] - forces[i - 1]);
@@ -322,7 +324,8 @@ std::vector<Row> reversed_push(coupling::PushProblem test, const std::string& na
     if (!r.report.usable()) force = not_computed;
     rows.push_back(
         {"friction",
-         fmt::format("slow push, {}, {} {:.3g} mm, over the largest force", name, loading ? "in" : "back at", d / mm),
+         fmt::format("slow push, {}, {} {:.3g} mm, over the largest force", name, loading ? "in" : "back at",
+                     d / mm),
          "", "static wire", Kind::convergence, curve.points[k].force / range, force / range,
          curve.points[k].force != 0.0
              ? Limit::relative(2e-3)
@@ -350,9 +353,12 @@ std::vector<Row> strand_push_rows() {
 }
 
 std::vector<Check> friction_checks() {
-  return {{"friction on an incline", incline_rows},        {"friction stops a block", stopping_block_rows},
-          {"rolling without sliding", rolling_rows},       {"stick and slip", stick_slip_rows},
-          {"slow push with friction", reversed_push_rows}, {"slow push of a wire with strands", strand_push_rows}};
+  return {{"friction on an incline", incline_rows},
+          {"friction stops a block", stopping_block_rows},
+          {"rolling without sliding", rolling_rows},
+          {"stick and slip", stick_slip_rows},
+          {"slow push with friction", reversed_push_rows},
+          {"slow push of a wire with strands", strand_push_rows}};
 }
 
 }  // namespace snare::validation

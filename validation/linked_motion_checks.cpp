@@ -17,8 +17,8 @@ using coupling::MotionResult;
 using coupling::MotionSample;
 using Eigen::Vector3d;
 
-Row linked_row(const std::string& name, const std::string& unit, const std::string& source, Kind kind, double reference,
-               double value, const Limit& limit) {
+Row linked_row(const std::string& name, const std::string& unit, const std::string& source, Kind kind,
+               double reference, double value, const Limit& limit) {
   return {"linked motion", name, unit, source, kind, reference, value, limit};
 }
 
@@ -64,18 +64,20 @@ std::vector<Row> welded_top_rows() {
   const double usable = result.report.usable() ? 0.0 : not_computed;
   const double angle = (I3 - I1) / I1 * w3 * duration;
   const double L = std::hypot(I1 * w1, I3 * w3);
-  return {linked_row("two welded bodies as a symmetric top, w_x after 10 s", "rad/s", "Euler", Kind::closed_form,
-                     w1 * std::cos(angle), last.bodies[1].spin.x() + usable, Limit::relative(1e-5)),
-          linked_row("two welded bodies as a symmetric top, w_y after 10 s", "rad/s", "Euler", Kind::closed_form,
-                     w1 * std::sin(angle), last.bodies[1].spin.y() + usable, Limit::relative(2e-6)),
-          linked_row("two welded bodies as a symmetric top, force in the weld", "N", "m r L w1/I1", Kind::closed_form,
-                     m * r * L * w1 / I1, last.welds[0].force.norm() + usable, Limit::relative(1e-5)),
-          linked_row("two welded bodies, largest gap of the weld", "m", "welded", Kind::closed_form, 0.0,
-                     result.largest_drift + usable,
-                     Limit::absolute(1e-8, "zero reference; a constraint between bodies that are a metre apart")),
-          linked_row("two welded bodies, integrator's energy over the energy", "", "conservation", Kind::closed_form,
-                     0.0, result.energy.integrator / result.energy.kinetic + usable,
-                     Limit::absolute(1e-6, "zero reference; the value is a share of the kinetic energy"))};
+  return {
+      linked_row("two welded bodies as a symmetric top, w_x after 10 s", "rad/s", "Euler", Kind::closed_form,
+                 w1 * std::cos(angle), last.bodies[1].spin.x() + usable, Limit::relative(1e-5)),
+      linked_row("two welded bodies as a symmetric top, w_y after 10 s", "rad/s", "Euler", Kind::closed_form,
+                 w1 * std::sin(angle), last.bodies[1].spin.y() + usable, Limit::relative(2e-6)),
+      linked_row("two welded bodies as a symmetric top, force in the weld", "N", "m r L w1/I1",
+                 Kind::closed_form, m * r * L * w1 / I1, last.welds[0].force.norm() + usable,
+                 Limit::relative(1e-5)),
+      linked_row("two welded bodies, largest gap of the weld", "m", "welded", Kind::closed_form, 0.0,
+                 result.largest_drift + usable,
+                 Limit::absolute(1e-8, "zero reference; a constraint between bodies that are a metre apart")),
+      linked_row("two welded bodies, integrator's energy over the energy", "", "conservation",
+                 Kind::closed_form, 0.0, result.energy.integrator / result.energy.kinetic + usable,
+                 Limit::absolute(1e-6, "zero reference; the value is a share of the kinetic energy"))};
 }
 
 // A straight wire on a heavy body that spins about its middle: EA u'' = -m w^2 x between fixed ends, N = m w^2 (l^2/24 -
@@ -94,10 +96,11 @@ std::vector<Row> moving_mount_rows() {
   rod.damping.bending_time = 1e-2;
   Motion motion;
   const Vector3d middle(0.5 * length, 0.0, 0.0);
-  motion.wires = {
-      {"wire", rod, coupling::straight_wire(rod, Vector3d::Zero(), {length, 0.0, 0.0}), Eigen::Matrix3Xd::Zero(3, 61)}};
+  motion.wires = {{"wire", rod, coupling::straight_wire(rod, Vector3d::Zero(), {length, 0.0, 0.0}),
+                   Eigen::Matrix3Xd::Zero(3, 61)}};
   for (int i = 0; i <= 60; ++i)
-    motion.wires[0].velocities.col(i) = spin * Vector3d::UnitZ().cross(motion.wires[0].positions.col(i) - middle);
+    motion.wires[0].velocities.col(i) =
+        spin * Vector3d::UnitZ().cross(motion.wires[0].positions.col(i) - middle);
   motion.bodies = {block(1e4, Vector3d::Constant(1e4), middle)};
   motion.bodies[0].start.spin = {0.0, 0.0, spin};
   for (const wire::End end : wire::ends) {
@@ -117,15 +120,17 @@ std::vector<Row> moving_mount_rows() {
   const double reference = -0.01 * spin * spin * length * length / 12.0;
   double off = 0.0;
   for (int i = 0; i <= 60; ++i) {
-    const Vector3d x = last.bodies[0].orientation.inverse() * (last.wires[0].col(i) - last.bodies[0].position);
+    const Vector3d x =
+        last.bodies[0].orientation.inverse() * (last.wires[0].col(i) - last.bodies[0].position);
     off = std::max(off, x.tail<2>().norm());
   }
   return {linked_row("wire on a spinning body, force of a mount along the wire", "N", "-m w^2 l^2/12",
-                     Kind::closed_form, reference, last.mount_forces[1].dot(along) + usable, Limit::relative(2e-3)),
-          linked_row("wire on a spinning body, off its chord", "m", "straight", Kind::closed_form, 0.0, off + usable,
-                     Limit::absolute(1e-7, "zero reference; the wire is 0.2 m long")),
-          linked_row("wire on a spinning body, largest gap of its mounts", "m", "held", Kind::closed_form, 0.0,
-                     result.largest_drift + usable,
+                     Kind::closed_form, reference, last.mount_forces[1].dot(along) + usable,
+                     Limit::relative(2e-3)),
+          linked_row("wire on a spinning body, off its chord", "m", "straight", Kind::closed_form, 0.0,
+                     off + usable, Limit::absolute(1e-7, "zero reference; the wire is 0.2 m long")),
+          linked_row("wire on a spinning body, largest gap of its mounts", "m", "held", Kind::closed_form,
+                     0.0, result.largest_drift + usable,
                      Limit::absolute(1e-8, "zero reference; a constraint of a wire that is 0.2 m long"))};
 }
 

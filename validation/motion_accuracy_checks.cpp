@@ -59,9 +59,10 @@ Motion impact(double damping, const coupling::MotionFriction& friction) {
 
 MotionOptions scaled(double factor) {
   MotionOptions options;
-  for (double* tolerance : {&options.relative_tolerance, &options.position_tolerance, &options.velocity_tolerance,
-                            &options.twist_tolerance, &options.body_position_tolerance,
-                            &options.body_velocity_tolerance, &options.angle_tolerance, &options.spin_tolerance}) {
+  for (double* tolerance :
+       {&options.relative_tolerance, &options.position_tolerance, &options.velocity_tolerance,
+        &options.twist_tolerance, &options.body_position_tolerance, &options.body_velocity_tolerance,
+        &options.angle_tolerance, &options.spin_tolerance}) {
     *tolerance *= factor;
   }
   return options;
@@ -84,7 +85,8 @@ Row resolved_impact_row(const std::string& what, double damping) {
   options.max_order = 5;
   const MotionResult r = coupling::simulate(impact(damping, {}), options);
   return {"balances",
-          fmt::format("impact, {}, tolerances that resolve the waves, integrator's energy over the impact's", what),
+          fmt::format("impact, {}, tolerances that resolve the waves, integrator's energy over the impact's",
+                      what),
           "",
           conserved,
           Kind::closed_form,
@@ -105,9 +107,10 @@ std::vector<Row> balance_rows() {
     MotionOptions options;
     options.duration = 0.04;
     const MotionResult r = coupling::simulate(impact(0.0, {}), options);
-    rows.push_back({"balances", "undamped impact, default tolerances, integrator's energy over the impact's", "",
-                    conserved, Kind::closed_form, 0.0, value_of(r, r.energy.integrator / energy),
-                    Limit::absolute(1e-3, "zero reference; the value is a share of the energy of the impact")});
+    rows.push_back(
+        {"balances", "undamped impact, default tolerances, integrator's energy over the impact's", "",
+         conserved, Kind::closed_form, 0.0, value_of(r, r.energy.integrator / energy),
+         Limit::absolute(1e-3, "zero reference; the value is a share of the energy of the impact")});
   }
   // A Kelvin-Voigt time that quiets nothing but the axial modes of a few elements; without it see undamped_impact_rows.
   rows.push_back(resolved_impact_row("damped by 1e-7 s", 1e-7));
@@ -115,14 +118,16 @@ std::vector<Row> balance_rows() {
   options.duration = 0.3;
   const MotionResult r = coupling::simulate(impact(1e-5, {0.3, 0.1, 0.01, 1.0}), options);
   const double impulse = r.impulse[0].norm();
-  rows.push_back({"balances", "momentum less the impulse of mounts, damped impact with friction, over the impulse", "",
+  rows.push_back({"balances",
+                  "momentum less the impulse of mounts, damped impact with friction, over the impulse", "",
                   "Newton", Kind::closed_form, 0.0, value_of(r, r.momentum_error.norm() / impulse),
                   Limit::absolute(1e-6, "zero reference; the value is a share of the impulse")});
-  rows.push_back({"balances", "angular momentum less that of mounts with couples, over impulse times span", "", "Euler",
-                  Kind::closed_form, 0.0, value_of(r, r.angular_momentum_error.norm() / (impulse * span)),
-                  Limit::absolute(1e-6, "zero reference; the value is a share of the impulse times the span")});
-  rows.push_back({"balances", "energy left when damping and friction are taken off, over the impact's", "", conserved,
-                  Kind::closed_form, 0.0, value_of(r, r.energy.integrator / energy),
+  rows.push_back(
+      {"balances", "angular momentum less that of mounts with couples, over impulse times span", "", "Euler",
+       Kind::closed_form, 0.0, value_of(r, r.angular_momentum_error.norm() / (impulse * span)),
+       Limit::absolute(1e-6, "zero reference; the value is a share of the impulse times the span")});
+  rows.push_back({"balances", "energy left when damping and friction are taken off, over the impact's", "",
+                  conserved, Kind::closed_form, 0.0, value_of(r, r.energy.integrator / energy),
                   Limit::absolute(1e-3, "zero reference; the value is a share of the energy of the impact")});
   rows.push_back({"balances", "penetration", "m", "foundation", Kind::closed_form, 0.0,
                   value_of(r, r.largest_penetration),
@@ -130,7 +135,8 @@ std::vector<Row> balance_rows() {
   rows.push_back(
       {"balances", "drift of quaternion and mounts", "", "constraint", Kind::closed_form, 0.0,
        value_of(r, r.largest_drift),
-       Limit::absolute(1e-9, "zero reference; a constraint of a wire that is 0.18 m long and of a unit quaternion")});
+       Limit::absolute(
+           1e-9, "zero reference; a constraint of a wire that is 0.18 m long and of a unit quaternion")});
   // The axial wave crosses an element in h/c.
   const wire::WireSpecification w = declared_specification();
   const double crossing = w.length / 60 / std::sqrt(w.axial_stiffness() / w.mass_per_length());
@@ -156,14 +162,16 @@ std::vector<Row> tolerance_rows() {
   for (std::size_t k = 0; k < factors.size(); ++k) {
     const MotionResult r = run(factors[k]);
     impulse_error[k] = value_of(r, (r.impulse[0] - finest.impulse[0]).norm() / finest.impulse[0].norm());
-    const std::string at = fmt::format("{:g} times the default tolerances, {} steps", factors[k], r.statistics.steps);
+    const std::string at =
+        fmt::format("{:g} times the default tolerances, {} steps", factors[k], r.statistics.steps);
     const double limit = std::array{1e-3, 1e-4, 1e-5}[k];
     // Vibrations of the wire, which coarse steps damp, have some 5e-4 of the force.
     const double force_limit = std::array{3e-3, 1e-3, 5e-4}[k];
-    rows.push_back({"tolerances", "impulse, " + at, "N s", "at a 300th of the default tolerances", Kind::convergence,
-                    finest.impulse[0].norm(), r.impulse[0].norm(), Limit::relative(limit)});
-    rows.push_back({"tolerances", "peak force, " + at, "N", "at a 300th of the default tolerances", Kind::convergence,
-                    finest.peak_force[0], r.peak_force[0], Limit::relative(force_limit)});
+    rows.push_back({"tolerances", "impulse, " + at, "N s", "at a 300th of the default tolerances",
+                    Kind::convergence, finest.impulse[0].norm(), r.impulse[0].norm(),
+                    Limit::relative(limit)});
+    rows.push_back({"tolerances", "peak force, " + at, "N", "at a 300th of the default tolerances",
+                    Kind::convergence, finest.peak_force[0], r.peak_force[0], Limit::relative(force_limit)});
   }
   rows.push_back({"tolerances", "exponent of the tolerance in the error of the impulse", "",
                   "order 2: error ~ step^2, step ~ tolerance^(1/3)", Kind::convergence, 2.0 / 3.0,
@@ -210,7 +218,8 @@ std::vector<double> static_forces(SlowPush& p, const std::vector<double>& travel
   p.test.travel = travel;
   const coupling::PushCurve curve = coupling::solve_push(p.test, p.options);
   std::vector<double> forces(travel.size(), not_computed);
-  for (std::size_t k = 0; k < std::min(forces.size(), curve.points.size()); ++k) forces[k] = curve.points[k].force;
+  for (std::size_t k = 0; k < std::min(forces.size(), curve.points.size()); ++k)
+    forces[k] = curve.points[k].force;
   return forces;
 }
 
@@ -257,11 +266,12 @@ std::vector<Row> friction_reversal_rows() {
   });
   const std::vector<double> reference = static_forces(p, travel);
   std::vector<Row> rows;
-  const auto deepest = static_cast<std::size_t>(std::max_element(travel.begin(), travel.end()) - travel.begin());
+  const auto deepest =
+      static_cast<std::size_t>(std::max_element(travel.begin(), travel.end()) - travel.begin());
   const auto row = [&](const std::string& name, std::size_t k) {
-    rows.push_back({"quasi-static limit", fmt::format("friction 0.2, {} at {:.3f} mm", name, travel[k] / mm), "N",
-                    "static curve, loaded and unloaded", Kind::convergence, reference[k], value_of(r, force[k]),
-                    Limit::relative(1e-3)});
+    rows.push_back({"quasi-static limit", fmt::format("friction 0.2, {} at {:.3f} mm", name, travel[k] / mm),
+                    "N", "static curve, loaded and unloaded", Kind::convergence, reference[k],
+                    value_of(r, force[k]), Limit::relative(1e-3)});
   };
   if (travel.size() < 20 || deepest + 10 >= travel.size())
     return {{"quasi-static limit", "friction reversal", "N", "", Kind::convergence, 1.0, not_computed,
@@ -276,7 +286,8 @@ std::vector<Row> friction_reversal_rows() {
 std::vector<Row> snap_through_rows() {
   constexpr double position = 80.0 * mm;
   constexpr double pace = 20.0 * mm;  // [m/s]
-  constexpr int elements = 200;  // a body meets the wire between vertices, the static push at one: 1e-3 apart with 100
+  constexpr int elements =
+      200;  // a body meets the wire between vertices, the static push at one: 1e-3 apart with 100
   SlowPush p = slow_push(position, elements, 0.0, coupling::PushDirection::inward);
   const double touch = touch_height(p);
   coupling::MotionBody& pusher = p.motion.bodies[0];
@@ -300,8 +311,8 @@ std::vector<Row> snap_through_rows() {
   });
   std::vector<Row> rows;
   const auto row = [&](const std::string& name, double reference, double value) {
-    rows.push_back({"quasi-static limit", name, "N", "static curve", Kind::convergence, reference, value_of(r, value),
-                    Limit::relative(1e-3)});
+    rows.push_back({"quasi-static limit", name, "N", "static curve", Kind::convergence, reference,
+                    value_of(r, value), Limit::relative(1e-3)});
   };
   std::vector<double> travel;
   std::vector<double> force;
@@ -380,8 +391,9 @@ std::vector<Row> folded_chain_rows() {
     last_time = s.time;
     return false;
   });
-  return {{"gravity", "folded chain, time for nine tenths of the fall", "s", "Calkin and March 1989, energy conserved",
-           Kind::closed_form, time, value_of(r, passed), Limit::relative(5e-3)}};
+  return {{"gravity", "folded chain, time for nine tenths of the fall", "s",
+           "Calkin and March 1989, energy conserved", Kind::closed_form, time, value_of(r, passed),
+           Limit::relative(5e-3)}};
 }
 
 std::vector<Check> motion_accuracy_checks() {

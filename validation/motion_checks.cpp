@@ -39,7 +39,8 @@ wire::RodInMotion rod_of(const wire::WireSpecification& w, double length, double
 Motion straight(const wire::RodInMotion& rod) {
   Motion motion;
   motion.wires.push_back({"wire", rod, {}, {}});
-  motion.wires[0].positions = coupling::straight_wire(rod, rod.properties.left.position, rod.properties.right.position);
+  motion.wires[0].positions =
+      coupling::straight_wire(rod, rod.properties.left.position, rod.properties.right.position);
   motion.wires[0].velocities = Matrix3Xd::Zero(3, rod.elements + 1);
   return motion;
 }
@@ -53,7 +54,8 @@ Motion buckled(const wire::RodInMotion& rod) {
 
 /// Frequency [Hz] of the projection of the motion from its start on a shape of the vertices' displacements (3, n), from
 /// rising zero crossings by linear interpolation. `expected` sets duration (eight periods) and sampling.
-double measured_frequency(Motion motion, const Matrix3Xd& shape, double expected, double speed, int order = 5) {
+double measured_frequency(Motion motion, const Matrix3Xd& shape, double expected, double speed,
+                          int order = 5) {
   motion.wires[0].velocities = speed * shape;
   const Matrix3Xd rest = motion.wires[0].positions;
   MotionOptions options;
@@ -88,8 +90,8 @@ Row frequency_row(const std::string& group, const std::string& name, const std::
 }  // namespace
 
 std::vector<Row> clamped_frequency_rows() {
-  constexpr std::array<double, 5> roots{4.730040744862704, 7.853204624095838, 10.995607838001671, 14.137165491257464,
-                                        17.278759657399481};  // cos x cosh x = 1
+  constexpr std::array<double, 5> roots{4.730040744862704, 7.853204624095838, 10.995607838001671,
+                                        14.137165491257464, 17.278759657399481};  // cos x cosh x = 1
   const wire::WireSpecification w = declared_specification();
   const double span = 175.0 * mm;
   wire::RodInMotion rod = rod_of(w, span, span, 200);
@@ -103,9 +105,10 @@ std::vector<Row> clamped_frequency_rows() {
       const double x = b * i / rod.elements;
       shape(1, i) = std::cosh(x) - std::cos(x) - ratio * (std::sinh(x) - std::sin(x));
     }
-    const double expected = b * b / (span * span) * std::sqrt(w.bending_stiffness() / w.mass_per_length()) / (2.0 * pi);
-    rows.push_back(frequency_row("free vibration", fmt::format("clamped beam, mode {}", k + 1), "Euler-Bernoulli",
-                                 Kind::closed_form, expected,
+    const double expected =
+        b * b / (span * span) * std::sqrt(w.bending_stiffness() / w.mass_per_length()) / (2.0 * pi);
+    rows.push_back(frequency_row("free vibration", fmt::format("clamped beam, mode {}", k + 1),
+                                 "Euler-Bernoulli", Kind::closed_form, expected,
                                  measured_frequency(straight(rod), shape, expected, 0.01)));
   }
   return rows;
@@ -125,7 +128,8 @@ std::vector<Row> tensioned_frequency_rows() {
     for (int i = 1; i < rod.elements; ++i) shape(1, i) = std::sin(pi * k * i / rod.elements);
     const double number = k * pi / span;
     const double mass = w.mass_per_length() / stretch;
-    const double expected = number * std::sqrt((tension + w.bending_stiffness() * number * number) / mass) / (2.0 * pi);
+    const double expected =
+        number * std::sqrt((tension + w.bending_stiffness() * number * number) / mass) / (2.0 * pi);
     rows.push_back(frequency_row("free vibration", fmt::format("pinned beam under 50 N, mode {}", k),
                                  "Euler-Bernoulli with tension", Kind::closed_form, expected,
                                  measured_frequency(straight(rod), shape, expected, 0.01)));
@@ -141,7 +145,8 @@ std::vector<Row> buckled_frequency_rows() {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(statics.unknowns());
   for (int i = 0; i <= 60; ++i) q.segment<3>(4 * i) = motion.wires[0].positions.col(i);
   wire::RodAssembly tangent;
-  statics.assemble(statics.make_state(q, {0.0, 0.5 * rod.length, rod.length}), {false, false, false}, tangent);
+  statics.assemble(statics.make_state(q, {0.0, 0.5 * rod.length, rod.length}), {false, false, false},
+                   tangent);
   constexpr int free = 2 * 59;
   Eigen::MatrixXd k(free, free);
   for (int a = 0; a < free; ++a) {
@@ -198,7 +203,8 @@ std::vector<Row> gravity_rows() {
     constexpr std::array<double, 3> roots{2.404825557695773, 5.520078110286311, 8.653727912911013};
     for (std::size_t k = 0; k < roots.size(); ++k) {
       for (int i = 1; i <= rod.elements; ++i) {
-        shape(1, i) = std::cyl_bessel_j(0.0, roots[k] * std::sqrt(1.0 - static_cast<double>(i) / rod.elements));
+        shape(1, i) =
+            std::cyl_bessel_j(0.0, roots[k] * std::sqrt(1.0 - static_cast<double>(i) / rod.elements));
       }
       const double expected = 0.5 * roots[k] * std::sqrt(g / 0.5) / (2.0 * pi);
       rows.push_back(frequency_row("gravity", fmt::format("hanging chain, mode {}", k + 1),
@@ -235,7 +241,8 @@ std::vector<Row> gravity_rows() {
     });
     if (!result.report.usable()) passed = not_computed;
     rows.push_back({"gravity", "falling rod, time from the horizontal to the vertical", "s",
-                    "physical pendulum, elliptic integral", Kind::closed_form, quarter, passed, Limit::relative(1e-3)});
+                    "physical pendulum, elliptic integral", Kind::closed_form, quarter, passed,
+                    Limit::relative(1e-3)});
   }
   return rows;
 }
@@ -276,10 +283,11 @@ std::vector<Row> slow_push_rows() {
   options.duration = (2.0 * mm + clearance) / speed;
   options.output_interval = options.duration;
   double last = not_computed;
-  const MotionResult result = coupling::simulate(motion, options, [&last](const coupling::MotionSample& sample) {
-    last = sample.contacts[0].normal_force;
-    return false;
-  });
+  const MotionResult result =
+      coupling::simulate(motion, options, [&last](const coupling::MotionSample& sample) {
+        last = sample.contacts[0].normal_force;
+        return false;
+      });
   if (!result.report.usable()) last = not_computed;
   std::vector<Row> rows;
   const double reference = curve.points.size() == 2 ? curve.points[1].force : not_computed;
@@ -332,22 +340,25 @@ std::vector<Row> impact_rows() {
   options.duration = 0.04;
   const double energy = 0.5 * 8.9 * 0.01;
   const Impact usual = impact(60, options, 0.0);
-  rows.push_back({"impact", "integrator's energy, default tolerances, over the impact energy", "", "conservation",
-                  Kind::closed_form, 0.0, usual.result.energy.integrator / energy,
+  rows.push_back({"impact", "integrator's energy, default tolerances, over the impact energy", "",
+                  "conservation", Kind::closed_form, 0.0, usual.result.energy.integrator / energy,
                   Limit::absolute(1e-3, "zero reference; the value is a share of the energy of the impact")});
   rows.push_back({"impact", "penetration", "m", "non-penetration", Kind::closed_form, 0.0,
-                  usual.result.largest_penetration, Limit::absolute(1e-6, "zero reference; the wire is 1.5 mm thick")});
+                  usual.result.largest_penetration,
+                  Limit::absolute(1e-6, "zero reference; the wire is 1.5 mm thick")});
   std::array<Impact, 3> meshes;
   constexpr std::array<int, 3> elements{50, 100, 200};
   for (std::size_t k = 0; k < 3; ++k) meshes[k] = impact(elements[k], options, 1e-6);
   for (std::size_t k = 0; k < 2; ++k) {
-    rows.push_back({"impact", fmt::format("impulse with {} elements", elements[k]), "N s", "with 200 elements",
-                    Kind::convergence, meshes[2].result.impulse[0].y(), meshes[k].result.impulse[0].y(),
+    rows.push_back({"impact", fmt::format("impulse with {} elements", elements[k]), "N s",
+                    "with 200 elements", Kind::convergence, meshes[2].result.impulse[0].y(),
+                    meshes[k].result.impulse[0].y(), Limit::relative(5e-3)});
+    rows.push_back({"impact", fmt::format("rebound velocity with {} elements", elements[k]), "m/s",
+                    "with 200 elements", Kind::convergence, meshes[2].velocity, meshes[k].velocity,
                     Limit::relative(5e-3)});
-    rows.push_back({"impact", fmt::format("rebound velocity with {} elements", elements[k]), "m/s", "with 200 elements",
-                    Kind::convergence, meshes[2].velocity, meshes[k].velocity, Limit::relative(5e-3)});
-    rows.push_back({"impact", fmt::format("rebound spin with {} elements", elements[k]), "rad/s", "with 200 elements",
-                    Kind::convergence, meshes[2].spin, meshes[k].spin, Limit::relative(5e-3)});
+    rows.push_back({"impact", fmt::format("rebound spin with {} elements", elements[k]), "rad/s",
+                    "with 200 elements", Kind::convergence, meshes[2].spin, meshes[k].spin,
+                    Limit::relative(5e-3)});
   }
   return rows;
 }

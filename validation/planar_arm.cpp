@@ -28,13 +28,15 @@ void add_joint(ElasticArm& arm, double motor_inertia, const DeflectionLaw& law) 
 Eigen::Matrix2d planar_mass(const PlanarLink& a, const PlanarLink& b, double q2) {
   const double cross = b.mass * a.length * b.centre * std::cos(q2);
   const double h22 = b.inertia + b.mass * b.centre * b.centre;
-  const double h11 = a.inertia + a.mass * a.centre * a.centre + b.mass * a.length * a.length + h22 + 2.0 * cross;
+  const double h11 =
+      a.inertia + a.mass * a.centre * a.centre + b.mass * a.length * a.length + h22 + 2.0 * cross;
   Eigen::Matrix2d H;
   H << h11, h22 + cross, h22 + cross, h22;
   return H;
 }
 
-Eigen::Vector2d planar_bias(const PlanarLink& a, const PlanarLink& b, double q2, const Eigen::Vector2d& rate) {
+Eigen::Vector2d planar_bias(const PlanarLink& a, const PlanarLink& b, double q2,
+                            const Eigen::Vector2d& rate) {
   const double h = b.mass * a.length * b.centre * std::sin(q2);
   return {-h * (2.0 * rate[0] * rate[1] + rate[1] * rate[1]), h * rate[0] * rate[0]};
 }
@@ -66,7 +68,8 @@ ElasticArm one_joint_arm(double link_inertia, double motor_inertia, const Deflec
   return arm;
 }
 
-multibody::ArmScenario at_rest(const ElasticArm& arm, const multibody::Drive& drive, double end, double tolerance) {
+multibody::ArmScenario at_rest(const ElasticArm& arm, const multibody::Drive& drive, double end,
+                               double tolerance) {
   multibody::ArmScenario s;
   s.arm = arm;
   s.initial = multibody::resting(arm, multibody::zero_state(arm.tree).q);

@@ -21,8 +21,8 @@ struct PlanarLink {
                                           const Eigen::Vector2d& rate);
 
 /// The same two links as an elastic arm about z, both joints with the same motor inertia [kg m^2] and spring.
-[[nodiscard]] multibody::ElasticArm planar_arm(const PlanarLink& first, const PlanarLink& second, double motor_inertia,
-                                               const multibody::DeflectionLaw& law);
+[[nodiscard]] multibody::ElasticArm planar_arm(const PlanarLink& first, const PlanarLink& second,
+                                               double motor_inertia, const multibody::DeflectionLaw& law);
 
 /// One link with the given moment of inertia about its joint [kg m^2].
 [[nodiscard]] multibody::ElasticArm one_joint_arm(double link_inertia, double motor_inertia,

@@ -100,7 +100,8 @@ std::vector<Row> buckled_shape_rows() {
   PushProblem test = stiffened(declared_wire(87.5 * mm, 0.0));
   test.travel = {0.0};
   const coupling::ExtrapolatedCurve stiff = coupling::solve_push_extrapolated(test, fine());
-  const BuckledElastica reference = clamped_elastica(test.wire.bending_stiffness(), test.wire.length, test.mount.span);
+  const BuckledElastica reference =
+      clamped_elastica(test.wire.bending_stiffness(), test.wire.length, test.mount.span);
   test = declared_wire(87.5 * mm, 0.0);
   test.travel = {0.0};
   const coupling::ExtrapolatedCurve declared = coupling::solve_push_extrapolated(test, fine());
@@ -109,8 +110,8 @@ std::vector<Row> buckled_shape_rows() {
   const ElasticaState unloaded = push(elastica, 0.0);
   return {{group, "compression, inextensible wire", "N", integrals, Kind::closed_form, reference.compression,
            -stiff.curve.points.front().tension_left, Limit::relative(1e-5)},
-          {group, "height of the bulge, inextensible wire", "mm", integrals, Kind::closed_form, reference.height / mm,
-           stiff.curve.natural_height / mm, Limit::relative(1e-5)},
+          {group, "height of the bulge, inextensible wire", "mm", integrals, Kind::closed_form,
+           reference.height / mm, stiff.curve.natural_height / mm, Limit::relative(1e-5)},
           {group, "height of the bulge, declared wire", "mm", multiple_shooting, Kind::independent_code,
            unloaded.pusher_height / mm, declared.curve.natural_height / mm, Limit::relative(1e-6)},
           {group, "tension at the mount, declared wire", "N", multiple_shooting, Kind::independent_code,
@@ -128,7 +129,8 @@ std::vector<Row> material_point_rows() {
           {group, "force, 128 edges", "N", multiple_shooting, Kind::independent_code, reference,
            force_at(declared_wire(87.5 * mm, 0.0), 1.5 * mm, 128), Limit::relative(1e-4)},
           {group, "force, six digits of another computation", "N", "232.983 N, computed apart from this code",
-           Kind::independent_code, 232.983, force_at(declared_wire(87.5 * mm, 0.0), 1.5 * mm), Limit::relative(5e-6)}};
+           Kind::independent_code, 232.983, force_at(declared_wire(87.5 * mm, 0.0), 1.5 * mm),
+           Limit::relative(5e-6)}};
 }
 
 std::vector<Row> elastica_rows() {
@@ -144,8 +146,8 @@ std::vector<Row> elastica_rows() {
         if (i >= reference.size() || !reference[i].report.usable()) break;
         const double value = i < result.curve.points.size() ? result.curve.points[i].force : not_computed;
         rows.push_back({group,
-                        fmt::format("force, {} at {:g} mm, travel {:g} mm", radius > 0.0 ? "cylinder" : "knife edge",
-                                    position, test.travel[i] / mm),
+                        fmt::format("force, {} at {:g} mm, travel {:g} mm",
+                                    radius > 0.0 ? "cylinder" : "knife edge", position, test.travel[i] / mm),
                         "N", multiple_shooting, Kind::independent_code, reference[i].force, value,
                         Limit::relative(1e-4)});
       }
@@ -195,8 +197,8 @@ std::vector<Row> shallow_outward_rows() {
     const double one = shallow_force(e.position, 1e-4, e.deflection, largest);
     const double two = shallow_force(e.position, 2e-4, e.deflection, largest);
     const std::string name = fmt::format("f at a = {:g}, s = {:g}", e.deflection, e.position);
-    rows.push_back({"Shallow limit, pushed outward", name + ", slack to 0", "", "closed form", Kind::closed_form,
-                    state.force, 2.0 * one - two, Limit::relative(2e-4)});
+    rows.push_back({"Shallow limit, pushed outward", name + ", slack to 0", "", "closed form",
+                    Kind::closed_form, state.force, 2.0 * one - two, Limit::relative(2e-4)});
   }
   return rows;
 }
@@ -216,7 +218,8 @@ std::vector<Row> shallow_inward_rows() {
     const int points = 200;
     for (int i = 1; i <= points; ++i) test.travel.push_back(0.3 * root * i / points);
     coupling::PushOptions options = fine();
-    options.instability = e.position == 0.5 ? coupling::Instability::follow_path : coupling::Instability::switch_branch;
+    options.instability =
+        e.position == 0.5 ? coupling::Instability::follow_path : coupling::Instability::switch_branch;
     const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, options);
     const std::vector<coupling::PushPoint>& points_reached = result.curve.points;
     if (points_reached.size() < 3) continue;
@@ -231,10 +234,10 @@ std::vector<Row> shallow_inward_rows() {
       test.travel = {0.5 * travel, travel};
       const coupling::ExtrapolatedCurve at = coupling::solve_push_extrapolated(test, options);
       const Normalised n = normalise(test, at.curve.points.back(), at.curve.touch_height - travel);
-      rows.push_back({group, "a where the symmetric path branches, s = 0.5", "", "closed form", Kind::closed_form,
-                      0.62351, n.deflection, Limit::relative(3e-4)});
-      rows.push_back({group, "largest f under load control, s = 0.5", "", "closed form", Kind::closed_form, e.largest,
-                      n.force, Limit::relative(3e-3)});
+      rows.push_back({group, "a where the symmetric path branches, s = 0.5", "", "closed form",
+                      Kind::closed_form, 0.62351, n.deflection, Limit::relative(3e-4)});
+      rows.push_back({group, "largest f under load control, s = 0.5", "", "closed form", Kind::closed_form,
+                      e.largest, n.force, Limit::relative(3e-3)});
       continue;
     }
     // Vertex of the parabola through the three highest points.
@@ -248,8 +251,8 @@ std::vector<Row> shallow_inward_rows() {
     const double curvature = before - 2.0 * highest.force + after;
     highest.force -= 0.125 * (after - before) * (after - before) / curvature;
     const Normalised n = normalise(test, highest, 0.0);
-    rows.push_back({group, fmt::format("largest f under load control, s = {:g}", e.position), "", "closed form",
-                    Kind::closed_form, e.largest, n.force, Limit::relative(3e-3)});
+    rows.push_back({group, fmt::format("largest f under load control, s = {:g}", e.position), "",
+                    "closed form", Kind::closed_form, e.largest, n.force, Limit::relative(3e-3)});
   }
   return rows;
 }
@@ -271,10 +274,11 @@ std::vector<Row> taut_rows() {
   test.wire.length = test.mount.span;
   test.wire.bending_stiffness_override = 1e-9;
   const double travel = 1.0 * mm;
-  rows.push_back({group, "force on a straight unstretched string at 65 mm", "N", "EA d^3/(2 l) (1/s + 1/(l - s))",
-                  Kind::closed_form,
-                  unstretched_wire_force(test.wire.axial_stiffness(), test.mount.span, test.contact_position, travel),
-                  force_at(test, travel, 512), Limit::relative(2e-3)});
+  rows.push_back(
+      {group, "force on a straight unstretched string at 65 mm", "N", "EA d^3/(2 l) (1/s + 1/(l - s))",
+       Kind::closed_form,
+       unstretched_wire_force(test.wire.axial_stiffness(), test.mount.span, test.contact_position, travel),
+       force_at(test, travel, 512), Limit::relative(2e-3)});
   return rows;
 }
 
@@ -309,10 +313,10 @@ std::vector<Row> friction_rows() {
   }
   return {{group, "force while sliding, cylinder at 40 mm, mu 0.2, 2 mm", "N", multiple_shooting,
            Kind::independent_code, reference, pushed.curve.points.back().force, Limit::relative(1e-4)},
-          {group, "dissipated energy beside the area of the loop", "mJ", "area of the computed loop", Kind::closed_form,
-           1e3 * area, 1e3 * loop.points.back().dissipated, Limit::relative(1e-2)},
-          {group, "force at the end of the closed loop", "N", "no force at first touch", Kind::closed_form, 0.0,
-           loop.points.back().force,
+          {group, "dissipated energy beside the area of the loop", "mJ", "area of the computed loop",
+           Kind::closed_form, 1e3 * area, 1e3 * loop.points.back().dissipated, Limit::relative(1e-2)},
+          {group, "force at the end of the closed loop", "N", "no force at first touch", Kind::closed_form,
+           0.0, loop.points.back().force,
            Limit::absolute(1e-6, "zero reference; the loop's largest force is that of sliding at 2 mm")}};
 }
 

@@ -32,8 +32,8 @@ bool names(const RecordTrace& trace, const std::string& effect) {
 }
 
 /// A shipped file with its readings where they are.
-identification::RecordSet read(const std::filesystem::path& file, const std::filesystem::path& csv, int records,
-                               bool course_too) {
+identification::RecordSet read(const std::filesystem::path& file, const std::filesystem::path& csv,
+                               int records, bool course_too) {
   const std::string path = fmt::format("\"{}\"", std::filesystem::absolute(csv).string());
   std::vector<base::Override> overrides;
   for (int k = 1; k <= records; ++k) overrides.push_back({fmt::format("records[{}].file", k), path});
@@ -48,7 +48,8 @@ double repeats(const RecordTrace& trace, const identification::RecordSet& set) {
   const Eigen::Index n = record.times.size();
   const auto shift = static_cast<Eigen::Index>(
       std::lround(cycle / (record.times[n - 1] - record.times[0]) * static_cast<double>(n - 1)));
-  const Eigen::VectorXd left = record.channels.front().values - trace.final.predictions.front().channels.front();
+  const Eigen::VectorXd left =
+      record.channels.front().values - trace.final.predictions.front().channels.front();
   const Eigen::ArrayXd first = left.head(n - shift).array() - left.head(n - shift).mean();
   const Eigen::ArrayXd later = left.tail(n - shift).array() - left.tail(n - shift).mean();
   return (first * later).sum() / std::sqrt(first.square().sum() * later.square().sum());
@@ -62,23 +63,26 @@ std::vector<Row> drive_rows(const std::filesystem::path& file, const std::filesy
   const double before = t.base.heldout.empty() ? not_computed : t.base.heldout.front().rmse;
   const double after = t.final.heldout.empty() ? not_computed : t.final.heldout.front().rmse;
   // The authors' filter is Chebyshev's and theirs at the same 40 Hz; with ours their own regression changes by 0.05 % of the force.
-  return {{group,
-           "force of inertia and viscous friction, of the readings (published with an offset, which takes 1 % of it)",
-           "", source, Kind::published_computation, 0.17, relative_error(t.base), Limit::relative(0.088)},
-          {group, "force with what was found, of the readings: at most as published with asymmetric friction", "",
-           source, Kind::published_computation, 0.0, relative_error(t.final),
-           Limit::absolute(0.0311, "an upper bound: the published error, a share of the force")},
-          yes(group, "dry friction is named first", source, Kind::published_computation,
-              !t.selected.empty() && t.selected.front().starts_with("joint_coulomb_friction (")),
-          yes(group, "asymmetry of the friction is named, and nothing else", source, Kind::published_computation,
-              t.selected.size() == 2 && (names(t, "joint_viscous_asymmetry") || names(t, "joint_friction_asymmetry"))),
-          yes(group, "partly explained: what is left is said", source, Kind::published_measurement,
-              t.kind == identification::VerdictKind::partly_explained),
-          {group, "what is left of the force is no noise: its correlation with itself one cycle later", "", source,
-           Kind::published_measurement, 1.0, repeats(t, set), Limit::relative(0.05)},
-          {group, "position under its own control after over before, simulated: at most a half", "", source,
-           Kind::published_measurement, 0.0, after / before,
-           Limit::absolute(0.5, "an upper bound of a ratio of two errors")}};
+  return {
+      {group,
+       "force of inertia and viscous friction, of the readings (published with an offset, which takes 1 % of "
+       "it)",
+       "", source, Kind::published_computation, 0.17, relative_error(t.base), Limit::relative(0.088)},
+      {group, "force with what was found, of the readings: at most as published with asymmetric friction", "",
+       source, Kind::published_computation, 0.0, relative_error(t.final),
+       Limit::absolute(0.0311, "an upper bound: the published error, a share of the force")},
+      yes(group, "dry friction is named first", source, Kind::published_computation,
+          !t.selected.empty() && t.selected.front().starts_with("joint_coulomb_friction (")),
+      yes(group, "asymmetry of the friction is named, and nothing else", source, Kind::published_computation,
+          t.selected.size() == 2 &&
+              (names(t, "joint_viscous_asymmetry") || names(t, "joint_friction_asymmetry"))),
+      yes(group, "partly explained: what is left is said", source, Kind::published_measurement,
+          t.kind == identification::VerdictKind::partly_explained),
+      {group, "what is left of the force is no noise: its correlation with itself one cycle later", "",
+       source, Kind::published_measurement, 1.0, repeats(t, set), Limit::relative(0.05)},
+      {group, "position under its own control after over before, simulated: at most a half", "", source,
+       Kind::published_measurement, 0.0, after / before,
+       Limit::absolute(0.5, "an upper bound of a ratio of two errors")}};
 }
 
 std::vector<Row> pendulum_rows(const std::filesystem::path& file, const std::filesystem::path& csv) {
@@ -88,10 +92,10 @@ std::vector<Row> pendulum_rows(const std::filesystem::path& file, const std::fil
   const RecordTrace t = identification::trace_records(set);
   const double declared = t.declared.heldout_rmse,
                last = t.with_partial ? t.with_partial->heldout_rmse : t.final.heldout_rmse;
-  return {yes(group, "a constant loss is named, or helps without explaining", source, Kind::published_measurement,
-              names(t, "joint_coulomb_friction")),
-          yes(group, "a quadratic loss is named, or helps without explaining", source, Kind::published_measurement,
-              names(t, "joint_quadratic_drag")),
+  return {yes(group, "a constant loss is named, or helps without explaining", source,
+              Kind::published_measurement, names(t, "joint_coulomb_friction")),
+          yes(group, "a quadratic loss is named, or helps without explaining", source,
+              Kind::published_measurement, names(t, "joint_quadratic_drag")),
           {group, "error of the parts held out over that of the authors' model: at most a half", "", source,
            Kind::published_computation, 0.0, last / declared,
            Limit::absolute(0.5, "an upper bound of a ratio of two errors")}};
@@ -107,7 +111,8 @@ struct FlightTruth {
 constexpr double made_gf = 9.3e7;        // N m/rad
 constexpr double made_ring_rate = 55.0;  // deg/s
 
-const identification::TracedNumber* number_of(const identification::RecordStage& stage, const std::string& key) {
+const identification::TracedNumber* number_of(const identification::RecordStage& stage,
+                                              const std::string& key) {
   for (const identification::TracedNumber& n : stage.numbers)
     if (n.key == key) return &n;
   return nullptr;
@@ -135,15 +140,17 @@ std::vector<Row> flight_rows(const std::filesystem::path& folder, const FlightTr
   const auto* wire = number_of(t.base, truth.wire);
   double heldout = t.base.heldout.empty() ? not_computed : 0.0;
   for (const identification::ChannelError& e : t.base.heldout) heldout = std::max(heldout, e.rmse / e.sigma);
-  return {{group, "stiffness of the fixture's attachment" + name, "N m/rad", source, truth.kind, made_gf, value_of(gf),
-           Limit::relative(0.01)},
+  return {{group, "stiffness of the fixture's attachment" + name, "N m/rad", source, truth.kind, made_gf,
+           value_of(gf), Limit::relative(0.01)},
           {group, "rate of the ring" + name, "deg/s", source, truth.kind, made_ring_rate, value_of(rate),
            Limit::relative(0.01)},
           yes(group, "its interval holds the stiffness of the wire" + name, source, truth.kind,
-              wire != nullptr && wire->lower && *wire->lower <= truth.stiffness && truth.stiffness <= *wire->upper),
-          {group, "second flight with the numbers of the first, over the noise" + name, "", source, truth.kind, 0.0,
-           heldout,
-           Limit::absolute(3.0, "an upper bound; the value is a multiple of the standard deviation of the noise")}};
+              wire != nullptr && wire->lower && *wire->lower <= truth.stiffness &&
+                  truth.stiffness <= *wire->upper),
+          {group, "second flight with the numbers of the first, over the noise" + name, "", source,
+           truth.kind, 0.0, heldout,
+           Limit::absolute(
+               3.0, "an upper bound; the value is a multiple of the standard deviation of the noise")}};
 }
 
 /// Until just behind the first touch a flight shows the ring's rate at most.
@@ -151,11 +158,12 @@ std::vector<Row> early_flight_rows(const std::filesystem::path& folder, const Fl
   const RecordTrace t = identification::trace_records(
       identification::read_records(folder / truth.file, {{"records[1].to_s", "1.2"}}), {.effects = false});
   const auto* wire = number_of(t.base, truth.wire);
-  return {yes("numbers of a capture from three rates of a flight",
-              "0.2 s behind the first touch: the wire's stiffness is called not identifiable, its interval holds it",
-              fmt::format("made by {}; Honda et al. 2014: little effect in the early phase", truth.maker), truth.kind,
-              not_identifiable(t, truth.wire) && wire != nullptr && wire->lower && *wire->lower <= truth.stiffness &&
-                  truth.stiffness <= *wire->upper)};
+  return {yes(
+      "numbers of a capture from three rates of a flight",
+      "0.2 s behind the first touch: the wire's stiffness is called not identifiable, its interval holds it",
+      fmt::format("made by {}; Honda et al. 2014: little effect in the early phase", truth.maker), truth.kind,
+      not_identifiable(t, truth.wire) && wire != nullptr && wire->lower && *wire->lower <= truth.stiffness &&
+          truth.stiffness <= *wire->upper)};
 }
 
 /// Flights on an arm whose attachment gives, and on one that is rigid as declared: data/records/flight_attachment.toml.
@@ -173,7 +181,8 @@ std::vector<Row> attachment_rows(const std::filesystem::path& folder) {
   return {
       yes(group, "it is named, and nothing else, and all is explained", source, Kind::convergence,
           soft.kind == identification::VerdictKind::explained &&
-              soft.selected == std::vector<std::string>{"bushing_stiffness (attachment.rotational_stiffness_Nm_rad)"}),
+              soft.selected ==
+                  std::vector<std::string>{"bushing_stiffness (attachment.rotational_stiffness_Nm_rad)"}),
       {group, "what it gives", "rad/(N m)", source, Kind::convergence, made, found, Limit::relative(0.02)},
       yes(group, "where it is rigid nothing is named", source, Kind::convergence,
           rigid.kind == identification::VerdictKind::nothing_missing && rigid.selected.empty())};
@@ -207,7 +216,8 @@ std::vector<Row> air_table_rows(const std::filesystem::path& folder) {
 
 }  // namespace
 
-std::vector<Check> record_checks(const std::filesystem::path& shipped, const std::filesystem::path& measured) {
+std::vector<Check> record_checks(const std::filesystem::path& shipped,
+                                 const std::filesystem::path& measured) {
   struct One {
     const char *name, *file, *csv;
     std::vector<Row> (*rows)(const std::filesystem::path&, const std::filesystem::path&);
@@ -218,16 +228,20 @@ std::vector<Check> record_checks(const std::filesystem::path& shipped, const std
         One{"tracing of a measured pendulum", "pendulum.toml", "pendulum/free_swing.csv", pendulum_rows}}) {
     const std::filesystem::path file = shipped / "records" / one.file, csv = measured / one.csv;
     const bool there = std::filesystem::is_regular_file(csv);
-    checks.push_back({one.name, [rows = one.rows, file, csv] { return rows(file, csv); },
-                      there ? "" : fmt::format("the measured file {} is not in {}", one.csv, measured.string())});
+    checks.push_back(
+        {one.name, [rows = one.rows, file, csv] { return rows(file, csv); },
+         there ? "" : fmt::format("the measured file {} is not in {}", one.csv, measured.string())});
   }
   const std::filesystem::path records = shipped / "records";
   static constexpr FlightTruth full{
       "flight.toml",     "full wires fitted by strings",  "snares[snare].wire.axial_stiffness_N", 6.0e4,
       Kind::convergence, "snare simulate with full wires"};
-  static constexpr FlightTruth rods{
-      "flight_rods.toml",     "rods by other equations",       "snares[snare].wire.rod.half_stiffness_N_m", 6.0e5,
-      Kind::independent_code, "tests/blind_records/capture.py"};
+  static constexpr FlightTruth rods{"flight_rods.toml",
+                                    "rods by other equations",
+                                    "snares[snare].wire.rod.half_stiffness_N_m",
+                                    6.0e5,
+                                    Kind::independent_code,
+                                    "tests/blind_records/capture.py"};
   checks.push_back({"a flight with full wires", [records] { return flight_rows(records, full); }, ""});
   checks.push_back({"a flight with turning rods", [records] { return flight_rows(records, rods); }, ""});
   checks.push_back({"an attachment that gives", [records] { return attachment_rows(records); }, ""});

@@ -57,8 +57,8 @@ double HelicalBuckling::envelope(double arc_length) const {
   return t * t;
 }
 
-HelicalBuckling helical_buckling(double bending_stiffness, double torsional_stiffness, double length, double shortening,
-                                 double end_rotation) {
+HelicalBuckling helical_buckling(double bending_stiffness, double torsional_stiffness, double length,
+                                 double shortening, double end_rotation) {
   const double ratio = length / shortening;
   const double twist = 4.0 * ratio * bending_stiffness / torsional_stiffness;
   const auto excess = [&](double psi) { return twist * std::sin(2.0 * psi) + 4.0 * psi - end_rotation; };

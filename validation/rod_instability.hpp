@@ -27,8 +27,8 @@ struct HelicalBuckling {
 /// bending_stiffness: B [N m^2], > 0; torsional_stiffness: C [N m^2], > 0; length: L [m], > 0;
 /// shortening: D in (0, L) [m]; end_rotation: R [rad], > 0, small enough for a root below psi = pi/4
 /// or slightly beyond; NaN in every field when there is none.
-[[nodiscard]] HelicalBuckling helical_buckling(double bending_stiffness, double torsional_stiffness, double length,
-                                               double shortening, double end_rotation);
+[[nodiscard]] HelicalBuckling helical_buckling(double bending_stiffness, double torsional_stiffness,
+                                               double length, double shortening, double end_rotation);
 
 /// Smallest torque that buckles a straight rod with clamped ends under a dead axial load, one end free to
 /// move along the axis [N m].
@@ -50,9 +50,11 @@ struct HelicalBuckling {
 /// Lateral-torsional buckling of a narrow cantilever under a load at the centroid of its tip:
 ///   F = 4.0126 sqrt(EI GJ)/L^2, from J_{-1/4}(F L^2/(2 sqrt(EI GJ))) = 0 [N].
 /// bending_stiffness: about the weak axis. Timoshenko and Gere 1961, sec. 6.3. Strong axis taken as rigid.
-[[nodiscard]] double lateral_buckling_load(double bending_stiffness, double torsional_stiffness, double length);
+[[nodiscard]] double lateral_buckling_load(double bending_stiffness, double torsional_stiffness,
+                                           double length);
 
 /// Lateral-torsional buckling of a simply supported narrow beam in pure bending: pi sqrt(EI GJ)/L [N m].
-[[nodiscard]] double lateral_buckling_moment(double bending_stiffness, double torsional_stiffness, double length);
+[[nodiscard]] double lateral_buckling_moment(double bending_stiffness, double torsional_stiffness,
+                                             double length);
 
 }  // namespace snare::validation

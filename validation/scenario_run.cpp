@@ -34,9 +34,9 @@ ScenarioRun run_of(const std::filesystem::path& file, const std::vector<std::str
 }
 
 double first_touch(const coupling::MotionResult& result, int contact) {
-  const auto found = std::find_if(result.events.begin(), result.events.end(), [contact](const MotionEvent& e) {
-    return e.kind == MotionEvent::Kind::touch && e.contact == contact;
-  });
+  const auto found = std::find_if(
+      result.events.begin(), result.events.end(),
+      [contact](const MotionEvent& e) { return e.kind == MotionEvent::Kind::touch && e.contact == contact; });
   return found == result.events.end() ? not_computed : found->time;
 }
 

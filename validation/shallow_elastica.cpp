@@ -37,7 +37,8 @@ ShallowState shallow_state(double compression, double position) {
 }
 
 ShallowState shallow_state_at(double deflection, double position) {
-  assert(deflection >= shallow_natural_deflection(position) && deflection < shallow_taut_deflection(position));
+  assert(deflection >= shallow_natural_deflection(position) &&
+         deflection < shallow_taut_deflection(position));
   double low = -1.0;
   while (shallow_state(low, position).deflection < deflection) low *= 4.0;
   double high = kFirstLoad;

@@ -20,13 +20,14 @@ using base::at;
 using coupling::MotionCarrier;
 using Eigen::Vector3d;
 
-Row snare_row(const std::string& name, const std::string& unit, const std::string& source, Kind kind, double reference,
-              double value, const Limit& limit) {
+Row snare_row(const std::string& name, const std::string& unit, const std::string& source, Kind kind,
+              double reference, double value, const Limit& limit) {
   return {"capture", name, unit, source, kind, reference, value, limit};
 }
 
 /// A machine that takes a point round the z axis: the mount of a wire, on no ring.
-coupling::MotionBody machine(const std::string& name, const Vector3d& start, const multibody::Course& course) {
+coupling::MotionBody machine(const std::string& name, const Vector3d& start,
+                             const multibody::Course& course) {
   coupling::MotionBody body;
   body.name = name;
   body.driven = true;
@@ -39,7 +40,8 @@ coupling::MotionBody machine(const std::string& name, const Vector3d& start, con
   };
   body.course_acceleration = [=](double time) -> Vector3d {
     const Vector3d r = at_time(time), across = Vector3d::UnitZ().cross(r);
-    return course.acceleration(time) * across + course.rate(time) * course.rate(time) * Vector3d::UnitZ().cross(across);
+    return course.acceleration(time) * across +
+           course.rate(time) * course.rate(time) * Vector3d::UnitZ().cross(across);
   };
   return body;
 }
@@ -99,9 +101,9 @@ std::vector<std::string> twice_as_large() {
 std::vector<Row> ring_two_ways_rows(const std::filesystem::path& data, const std::string& model) {
   scenario::NamedMotion by_joint =
       motion_of(data / "scenarios/snare_on_pin.toml",
-                {fmt::format("snares[snare].wire.model=\"{}\"", model), "shapes[pin].position_mm=[0.3,0.1,0.0]",
-                 "snares[snare].ring.stiffness_Nm_rad=1.0e9", "snares[snare].ring.damping_Nms_rad=1.0e5",
-                 "damping.axial_time_s=1.0e-3"});
+                {fmt::format("snares[snare].wire.model=\"{}\"", model),
+                 "shapes[pin].position_mm=[0.3,0.1,0.0]", "snares[snare].ring.stiffness_Nm_rad=1.0e9",
+                 "snares[snare].ring.damping_Nms_rad=1.0e5", "damping.axial_time_s=1.0e-3"});
   // A course whose rate has no kinks: the machines' places are integrated.
   const multibody::Course course(140.0 * base::degree, 178.0 * base::degree, 0.05, 0.9);
   by_joint.motion.phases.clear();
@@ -135,7 +137,8 @@ std::vector<Row> ring_two_ways_rows(const std::filesystem::path& data, const std
   // Contacts of the wires with the pin, which come first, or where laws stand for the wires alone.
   for (std::size_t k = 0; k < wires.size(); ++k) {
     const std::string name = fmt::format("ring as a joint, {} wires, {}: ", model, wires[k].name);
-    rows.push_back(snare_row(name + "tension", "N", source, Kind::convergence, coupling::end_tension(machines.last, k),
+    rows.push_back(snare_row(name + "tension", "N", source, Kind::convergence,
+                             coupling::end_tension(machines.last, k),
                              coupling::end_tension(joint.last, k) + usable, Limit::relative(1e-4)));
     rows.push_back(snare_row(name + "peak force on the pin", "N", source, Kind::convergence,
                              machines.result.peak_force[k], joint.result.peak_force[k] + usable,
@@ -192,7 +195,8 @@ std::vector<Row> held_shaft_rows(const std::filesystem::path& data) {
                                      if (s.time < 60.01) c.at_60 = z;
                                      c.at_120 = z;
                                      c.normal = 0.0;
-                                     for (std::size_t k = 0; k < 3; ++k) c.normal += s.contacts[k].normal_force;
+                                     for (std::size_t k = 0; k < 3; ++k)
+                                       c.normal += s.contacts[k].normal_force;
                                    });
     c.at_120 += run.usable();
     c.most += run.usable();
@@ -202,11 +206,13 @@ std::vector<Row> held_shaft_rows(const std::filesystem::path& data) {
   constexpr double pull = 5.0, friction = 0.3, static_speed = 1e-4;
   double x = 0.0;
   for (int k = 0; k < 60; ++k) x = 2.0 * pull / (friction * creeps.normal) / (3.0 - x * x);
-  return {snare_row("shaft held by three wires, way from 60 to 120 s, stick_slip", "m", "rests", Kind::closed_form, 0.0,
-                    sticks.most - sticks.least,
-                    Limit::absolute(1e-5, "zero reference; the smooth law creeps by the way of the next row")),
-          snare_row("shaft held by three wires, way from 60 to 120 s, smooth", "m", "mu N x (3 - x^2)/2 = F",
-                    Kind::closed_form, 60.0 * static_speed * x, creeps.at_120 - creeps.at_60, Limit::relative(0.05))};
+  return {
+      snare_row("shaft held by three wires, way from 60 to 120 s, stick_slip", "m", "rests",
+                Kind::closed_form, 0.0, sticks.most - sticks.least,
+                Limit::absolute(1e-5, "zero reference; the smooth law creeps by the way of the next row")),
+      snare_row("shaft held by three wires, way from 60 to 120 s, smooth", "m", "mu N x (3 - x^2)/2 = F",
+                Kind::closed_form, 60.0 * static_speed * x, creeps.at_120 - creeps.at_60,
+                Limit::relative(0.05))};
 }
 
 // Sliding back through the middle along its axis, the pin feels nothing but the friction of what the wires press it with.
@@ -238,11 +244,11 @@ std::vector<Row> constraint_test_rows(const std::filesystem::path& data) {
   constexpr double friction = 0.1;
   const Reading sliding = half.size() > middle ? half[middle] : Reading{};
   const std::string source = "similarity of all terms at the same speeds and stresses";
-  return {snare_row("constraint test at full scale, force less 4 times that at half, over its peak", "", source,
-                    Kind::convergence, 0.0, force / most_force + usable,
+  return {snare_row("constraint test at full scale, force less 4 times that at half, over its peak", "",
+                    source, Kind::convergence, 0.0, force / most_force + usable,
                     Limit::absolute(5e-3, "zero reference; the value is a share of the peak force")),
-          snare_row("constraint test at full scale, moment less 8 times that at half, over its peak", "", source,
-                    Kind::convergence, 0.0, moment / most_moment + usable,
+          snare_row("constraint test at full scale, moment less 8 times that at half, over its peak", "",
+                    source, Kind::convergence, 0.0, moment / most_moment + usable,
                     Limit::absolute(5e-3, "zero reference; the value is a share of the peak moment")),
           snare_row("constraint test, force along the pin as it slides through the middle", "N", "mu sum N",
                     Kind::closed_form, friction * sliding.normal, std::abs(sliding.sensor.force.z()) + usable,

@@ -12,7 +12,8 @@ namespace snare::validation {
 [[nodiscard]] std::vector<Check> snare_checks(const std::filesystem::path& data);
 
 /// Rows of `snare_checks`. model: "stretched" or "quasi_static".
-[[nodiscard]] std::vector<Row> ring_two_ways_rows(const std::filesystem::path& data, const std::string& model);
+[[nodiscard]] std::vector<Row> ring_two_ways_rows(const std::filesystem::path& data,
+                                                  const std::string& model);
 [[nodiscard]] std::vector<Row> held_shaft_rows(const std::filesystem::path& data);
 [[nodiscard]] std::vector<Row> constraint_test_rows(const std::filesystem::path& data);
 [[nodiscard]] std::vector<Row> bench_rows(const std::filesystem::path& data);

@@ -26,6 +26,7 @@ struct SpanStiffness {
 /// Deflection under a unit transverse load at `position` of a span clamped at both ends, EI = 1 [m^3 per EI].
 ///   G = 1 / (K_ww - K_wt^2 / K_tt), K the sum over both sides of the load.
 /// tension: T/EI [1/m^2]; length > 0 [m]; position in (0, length) [m].
-[[nodiscard]] std::complex<double> point_load_compliance(std::complex<double> tension, double length, double position);
+[[nodiscard]] std::complex<double> point_load_compliance(std::complex<double> tension, double length,
+                                                         double position);
 
 }  // namespace snare::validation

@@ -30,8 +30,8 @@ enum class Kind {
   convergence,
 };
 
-inline constexpr Kind all_kinds[] = {Kind::closed_form, Kind::published_measurement, Kind::published_computation,
-                                     Kind::independent_code, Kind::convergence};
+inline constexpr Kind all_kinds[] = {Kind::closed_form, Kind::published_measurement,
+                                     Kind::published_computation, Kind::independent_code, Kind::convergence};
 
 /// Name in validation.json, "closed_form".
 [[nodiscard]] std::string_view key_of(Kind kind);

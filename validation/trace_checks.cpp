@@ -28,8 +28,8 @@ double right(const BlindSet& set, const identification::Trace& t) {
 
 std::vector<Row> blind_rows() {
   std::vector<Row> rows;
-  for (const char* effect :
-       {"none", "wire_length", "mount_slip", "contact_friction", "strand_hysteresis", "force_offset", "drift"}) {
+  for (const char* effect : {"none", "wire_length", "mount_slip", "contact_friction", "strand_hysteresis",
+                             "force_offset", "drift"}) {
     const BlindSet set = make_blind_set(effect, 30.0, 101);
     identification::TraceOptions options;
     options.intervals = false;
@@ -39,8 +39,9 @@ std::vector<Row> blind_rows() {
                     Kind::independent_code, 1.0, right(set, t), Limit::relative(0.5)});
     if (set.effect == "drift") continue;
     // 234 readings: chi2 over its degrees of freedom has a standard deviation of 0.09.
-    rows.push_back({"tracing of blind sets", fmt::format("chi2 a degree of freedom after, inside: {}", effect), "",
-                    source, Kind::independent_code, 1.0, t.final.chi2_dof, Limit::relative(0.3)});
+    rows.push_back({"tracing of blind sets",
+                    fmt::format("chi2 a degree of freedom after, inside: {}", effect), "", source,
+                    Kind::independent_code, 1.0, t.final.chi2_dof, Limit::relative(0.3)});
   }
   return rows;
 }
@@ -67,8 +68,8 @@ direction = "inward"
 )",
                                  diameter, span + 20.0, span, support_radius, support_radius);
   for (const std::filesystem::path& file : files) {
-    text += fmt::format("[[series]]\nname = \"{}\"\ncontact_position_mm = {}\nfile = \"{}\"\n", file.stem().string(),
-                        0.5 * span, std::filesystem::absolute(file).string());
+    text += fmt::format("[[series]]\nname = \"{}\"\ncontact_position_mm = {}\nfile = \"{}\"\n",
+                        file.stem().string(), 0.5 * span, std::filesystem::absolute(file).string());
   }
   return identification::parse_experiment("measured.toml", text, identification::parameters());
 }
@@ -90,16 +91,16 @@ Row scatter_row(const identification::Trace& t, const std::string& group, const 
             t.base_tests.like_noise() ? 1.0 : 0.0,
             Limit::relative(0.5)};
   }
-  return {
-      "tracing of measured strands",
-      fmt::format("{}: error after over the replicates' scatter (before {:.2f}), at most {}", group,
-                  t.base.rmse / sigma, most_over_scatter),
-      "",
-      source,
-      Kind::published_measurement,
-      0.0,
-      t.final.rmse / sigma,
-      Limit::absolute(most_over_scatter, "an upper bound; the value is a multiple of the scatter of the replicates")};
+  return {"tracing of measured strands",
+          fmt::format("{}: error after over the replicates' scatter (before {:.2f}), at most {}", group,
+                      t.base.rmse / sigma, most_over_scatter),
+          "",
+          source,
+          Kind::published_measurement,
+          0.0,
+          t.final.rmse / sigma,
+          Limit::absolute(most_over_scatter,
+                          "an upper bound; the value is a multiple of the scatter of the replicates")};
 }
 
 std::vector<Row> measured_rows(const std::vector<std::filesystem::path>& files, const std::string& group,
@@ -112,9 +113,10 @@ std::vector<Row> measured_rows(const std::vector<std::filesystem::path>& files, 
   // An engineer's reading of the curves: group 4 softens as strands do that let go, group 5 is as straight as its
   // replicates are alike.
   const bool told = t.kind != identification::VerdictKind::not_explained;
-  const bool one_of_the_strands = t.selected.empty() || t.selected == std::vector<std::string>{"strand_hysteresis"};
-  return {{"tracing of measured strands", fmt::format("{}: {} ({})", group, to_string(t.kind), answer), "", source,
-           Kind::published_measurement, 1.0, told ? 1.0 : 0.0, Limit::relative(0.5)},
+  const bool one_of_the_strands =
+      t.selected.empty() || t.selected == std::vector<std::string>{"strand_hysteresis"};
+  return {{"tracing of measured strands", fmt::format("{}: {} ({})", group, to_string(t.kind), answer), "",
+           source, Kind::published_measurement, 1.0, told ? 1.0 : 0.0, Limit::relative(0.5)},
           {"tracing of measured strands", fmt::format("{}: no culprit but the strands", group), "", source,
            Kind::published_measurement, 1.0, one_of_the_strands ? 1.0 : 0.0, Limit::relative(0.5)},
           scatter_row(t, group, source)};
@@ -131,7 +133,8 @@ std::vector<Check> tracing_checks(const std::filesystem::path& measured) {
   for (const Group& g : {Group{"group4", 2.5, 40.0, 2.0}, Group{"group5", 3.6, 57.6, 5.0}}) {
     std::vector<std::filesystem::path> files;
     for (int k = 1; k <= 9; ++k) {
-      const std::filesystem::path file = measured / "three_point_bending" / fmt::format("{}_{}.csv", g.name, k);
+      const std::filesystem::path file =
+          measured / "three_point_bending" / fmt::format("{}_{}.csv", g.name, k);
       if (std::filesystem::exists(file)) files.push_back(file);
     }
     const std::string name = fmt::format("tracing of measured strands, {}", g.name);
@@ -141,7 +144,8 @@ std::vector<Check> tracing_checks(const std::filesystem::path& measured) {
                                     (measured / "three_point_bending").string())});
       continue;
     }
-    checks.push_back({name, [files, g] { return measured_rows(files, g.name, g.diameter, g.span, g.radius); }, ""});
+    checks.push_back(
+        {name, [files, g] { return measured_rows(files, g.name, g.diameter, g.span, g.radius); }, ""});
   }
   return checks;
 }

@@ -10,8 +10,8 @@ template <>
 Vector3d WeightedCurvatureOf<double>::by_rotation() const {
   // u and w_+ turn by omega: dkb = 2 t x (omega x u)/chi - kb t.(omega x u)/chi, dw_+ = omega x w_+.
   const Vector3d half_sum = 0.5 * (w_a_ + w_b_);
-  return 0.5 * w_b_.cross(turn_.binormal) + (2.0 / turn_.chi) * turn_.after.cross(half_sum.cross(turn_.before)) +
-         0.5 * value_ * turn_.binormal;
+  return 0.5 * w_b_.cross(turn_.binormal) +
+         (2.0 / turn_.chi) * turn_.after.cross(half_sum.cross(turn_.before)) + 0.5 * value_ * turn_.binormal;
 }
 
 // d2(f^2/2) = df df^T + f d2f: the first term, times `factor`.

@@ -97,8 +97,8 @@ void add_cosine_gradient(const TurnOf<S>& turn, const InverseLengthsOf<S>& inver
 /// Adds first * hessian of c + second * (gradient of c)(gradient of c)^T: the Hessian of a function of c with
 /// those derivatives.                                                                       theory.md (W.23)
 template <class S>
-void add_cosine_hessian(const TurnOf<S>& turn, const InverseLengthsOf<S>& inverse, const S& first, const S& second,
-                        PairHessianOf<S>& out);
+void add_cosine_hessian(const TurnOf<S>& turn, const InverseLengthsOf<S>& inverse, const S& first,
+                        const S& second, PairHessianOf<S>& out);
 
 /// Material directors of an edge.
 template <class S>
@@ -116,16 +116,19 @@ using Pair = std::array<S, 2>;
 ///   kappa_1 = 1/2 (m2 before + m2 after).kb,  kappa_2 = -1/2 (m1 before + m1 after).kb
 /// kappa_1 > 0 bends the rod towards its director m1, kappa_2 > 0 towards m2.
 template <class S>
-[[nodiscard]] Pair<S> curvature_pair(const TurnOf<S>& turn, const DirectorsOf<S>& before, const DirectorsOf<S>& after);
-[[nodiscard]] inline Eigen::Vector2d curvatures(const Turn& turn, const Directors& before, const Directors& after) {
+[[nodiscard]] Pair<S> curvature_pair(const TurnOf<S>& turn, const DirectorsOf<S>& before,
+                                     const DirectorsOf<S>& after);
+[[nodiscard]] inline Eigen::Vector2d curvatures(const Turn& turn, const Directors& before,
+                                                const Directors& after) {
   const Pair<double> kappa = curvature_pair(turn, before, after);
   return {kappa[0], kappa[1]};
 }
 
 /// Their rates [1/s] by those of the edges over their lengths, a'/|a| and b'/|b|, and of the angles [1/s].
 template <class S>
-[[nodiscard]] Pair<S> curvature_rates(const TurnOf<S>& turn, const DirectorsOf<S>& before, const DirectorsOf<S>& after,
-                                      const Vector3<S>& a, const Vector3<S>& b, const S& theta_a, const S& theta_b);
+[[nodiscard]] Pair<S> curvature_rates(const TurnOf<S>& turn, const DirectorsOf<S>& before,
+                                      const DirectorsOf<S>& after, const Vector3<S>& a, const Vector3<S>& b,
+                                      const S& theta_a, const S& theta_b);
 
 /// One linear combination kappa_w = g_1 kappa_1 + g_2 kappa_2 = 1/2 (w before + w after).kb with
 /// w = g_1 m2 - g_2 m1, dw/dtheta = -v, v = g_1 m1 + g_2 m2.                                 theory.md (W.25)
@@ -136,8 +139,8 @@ template <class S>
 class WeightedCurvatureOf {
  public:
   /// g_1, g_2: of any unit.
-  WeightedCurvatureOf(const TurnOf<S>& turn, const DirectorsOf<S>& before, const DirectorsOf<S>& after, const S& g_1,
-                      const S& g_2);
+  WeightedCurvatureOf(const TurnOf<S>& turn, const DirectorsOf<S>& before, const DirectorsOf<S>& after,
+                      const S& g_1, const S& g_2);
 
   /// kappa_w [-].
   [[nodiscard]] S value() const noexcept { return value_; }
@@ -180,8 +183,9 @@ template <class S>
 
 // (W.23)  f(c):   df/da = f' dc/da,   dc/da = (u - c t)/|a|,   dc/db = (t - c u)/|b|;   first = f'.
 template <class S>
-[[gnu::always_inline]] inline void add_cosine_gradient(const TurnOf<S>& turn, const InverseLengthsOf<S>& inverse,
-                                                       const S& first, PairGradientOf<S>& out) {
+[[gnu::always_inline]] inline void add_cosine_gradient(const TurnOf<S>& turn,
+                                                       const InverseLengthsOf<S>& inverse, const S& first,
+                                                       PairGradientOf<S>& out) {
   out.a += (first * inverse.a) * (turn.after - turn.cosine * turn.before);
   out.b += (first * inverse.b) * (turn.before - turn.cosine * turn.after);
 }
@@ -190,7 +194,8 @@ template <class S>
 template <class S>
 [[gnu::always_inline]] inline Pair<S> curvature_pair(const TurnOf<S>& turn, const DirectorsOf<S>& before,
                                                      const DirectorsOf<S>& after) {
-  return {0.5 * turn.binormal.dot(before.second + after.second), -0.5 * turn.binormal.dot(before.first + after.first)};
+  return {0.5 * turn.binormal.dot(before.second + after.second),
+          -0.5 * turn.binormal.dot(before.first + after.first)};
 }
 
 // (W.24) with t' = (I - t t^T) a'/|a| and likewise u', c' = t'.u + t.u', and directors that turn by theta' about t, u:
@@ -200,7 +205,8 @@ template <class S>
 template <class S>
 [[gnu::always_inline]] inline Pair<S> curvature_rates(const TurnOf<S>& turn, const DirectorsOf<S>& before,
                                                       const DirectorsOf<S>& after, const Vector3<S>& a,
-                                                      const Vector3<S>& b, const S& theta_a, const S& theta_b) {
+                                                      const Vector3<S>& b, const S& theta_a,
+                                                      const S& theta_b) {
   const Vector3<S>& t = turn.before;
   const Vector3<S>& u = turn.after;
   const Vector3<S>& kb = turn.binormal;
@@ -209,8 +215,10 @@ template <class S>
   const S inverse = 1.0 / turn.chi;
   const Vector3<S> kb_rate =
       inverse * (2.0 * (t_rate.cross(u) + t.cross(u_rate)) - (t_rate.dot(u) + t.dot(u_rate)) * kb);
-  return {0.5 * (kb_rate.dot(before.second + after.second) - kb.dot(theta_a * before.first + theta_b * after.first)),
-          -0.5 * (kb_rate.dot(before.first + after.first) + kb.dot(theta_a * before.second + theta_b * after.second))};
+  return {0.5 * (kb_rate.dot(before.second + after.second) -
+                 kb.dot(theta_a * before.first + theta_b * after.first)),
+          -0.5 * (kb_rate.dot(before.first + after.first) +
+                  kb.dot(theta_a * before.second + theta_b * after.second))};
 }
 
 // (W.25)  kappa = 1/2 kb.s with s = w_- + w_+. The carried directors change along t and u, where kb is zero,
@@ -219,8 +227,8 @@ template <class S>
 template <class S>
 [[gnu::always_inline]] inline WeightedCurvatureOf<S>::WeightedCurvatureOf(const TurnOf<S>& turn,
                                                                           const DirectorsOf<S>& before,
-                                                                          const DirectorsOf<S>& after, const S& g_1,
-                                                                          const S& g_2)
+                                                                          const DirectorsOf<S>& after,
+                                                                          const S& g_1, const S& g_2)
     : turn_(turn),
       w_a_(g_1 * before.second - g_2 * before.first),
       w_b_(g_1 * after.second - g_2 * after.first),
@@ -257,8 +265,9 @@ template <class S>
 //   |a|^2 d2c/da2 = -(t p^T + p t^T) - c (I - t t^T),   |b|^2 d2c/db2 = -(u r^T + r u^T) - c (I - u u^T),
 //   |a||b| d2c/da db = (I - t t^T)(I - u u^T) = I - t t^T - u u^T + c t u^T.
 template <class S>
-[[gnu::always_inline]] inline void add_cosine_hessian(const TurnOf<S>& turn, const InverseLengthsOf<S>& inverse,
-                                                      const S& first, const S& second, PairHessianOf<S>& out) {
+[[gnu::always_inline]] inline void add_cosine_hessian(const TurnOf<S>& turn,
+                                                      const InverseLengthsOf<S>& inverse, const S& first,
+                                                      const S& second, PairHessianOf<S>& out) {
   // Every block is written as a sum of columns times (t, p)^T or (u, r)^T and a multiple of I.
   const S c = turn.cosine;
   const Vector3<S>& t = turn.before;
@@ -321,10 +330,10 @@ template <class S>
   const Vector3<S> quarter = 0.25 * kb;
   for (int j = 0; j < 3; ++j) {
     for (int i = 0; i < 3; ++i) {
-      out.aa(i, j) += faa * (aa_mean[i] * mean[j] + mean[i] * aa_mean[j] + share * t[i] * t[j] + quarter[i] * w_a_[j] +
-                             w_a_[i] * quarter[j]);
-      out.bb(i, j) += fbb * (bb_mean[i] * mean[j] + mean[i] * bb_mean[j] + share * u[i] * u[j] + quarter[i] * w_b_[j] +
-                             w_b_[i] * quarter[j]);
+      out.aa(i, j) += faa * (aa_mean[i] * mean[j] + mean[i] * aa_mean[j] + share * t[i] * t[j] +
+                             quarter[i] * w_a_[j] + w_a_[i] * quarter[j]);
+      out.bb(i, j) += fbb * (bb_mean[i] * mean[j] + mean[i] * bb_mean[j] + share * u[i] * u[j] +
+                             quarter[i] * w_b_[j] + w_b_[i] * quarter[j]);
       out.ab(i, j) += fab * (ab_mean[i] * mean[j] + mean[i] * turned_b_[j] - share * t[i] * u[j]);
     }
     out.aa(j, j) -= faa * share;
@@ -352,7 +361,8 @@ template <class S>
 
 template <class S>
 [[gnu::always_inline]] inline PairGradientOf<S> product(const PairHessianOf<S>& h, const Vector3<S>& a,
-                                                        const Vector3<S>& b, const S& theta_a, const S& theta_b) {
+                                                        const Vector3<S>& b, const S& theta_a,
+                                                        const S& theta_b) {
   using numerics::times;
   using numerics::transposed_times;
   PairGradientOf<S> g;
@@ -364,7 +374,8 @@ template <class S>
 }
 
 template <class S>
-[[gnu::always_inline]] inline void add_scaled(const PairHessianOf<S>& h, const S& factor, PairHessianOf<S>& sum) {
+[[gnu::always_inline]] inline void add_scaled(const PairHessianOf<S>& h, const S& factor,
+                                              PairHessianOf<S>& sum) {
   for (int j = 0; j < 3; ++j) {
     for (int i = 0; i < 3; ++i) {
       sum.aa(i, j) += factor * h.aa(i, j);

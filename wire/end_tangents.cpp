@@ -16,7 +16,8 @@ namespace {
 /// EI at an end [N m^2], with that of sliders that stick.
 double bending_stiffness(const PlanarRodProperties& p, bool left) {
   const std::vector<double>& profile = p.bending_profile;
-  double stiffness = p.bending_stiffness * (profile.empty() ? 1.0 : (left ? profile.front() : profile.back()));
+  double stiffness =
+      p.bending_stiffness * (profile.empty() ? 1.0 : (left ? profile.front() : profile.back()));
   for (const SliderElement& slider : p.bending_sliders) stiffness += slider.stiffness;
   return stiffness;
 }

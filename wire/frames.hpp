@@ -24,13 +24,15 @@ struct Frame {
 ///   P v = v - (v.to)/(1 + from.to) (from + to).
 /// Not a number when the two are opposite.
 template <class S>
-[[nodiscard]] numerics::Vector3<S> parallel_transport(const numerics::Vector3<S>& v, const numerics::Vector3<S>& from,
+[[nodiscard]] numerics::Vector3<S> parallel_transport(const numerics::Vector3<S>& v,
+                                                      const numerics::Vector3<S>& from,
                                                       const numerics::Vector3<S>& to);
 
 /// The director of a frame that is carried from one unit tangent to another without turning about it; it is made perpendicular
 /// and of unit length anew, so that round-off does not add up over many steps.
 template <class S>
-[[nodiscard]] numerics::Vector3<S> transported(const numerics::Vector3<S>& director, const numerics::Vector3<S>& from,
+[[nodiscard]] numerics::Vector3<S> transported(const numerics::Vector3<S>& director,
+                                               const numerics::Vector3<S>& from,
                                                const numerics::Vector3<S>& to);
 [[nodiscard]] inline Frame transport(const Frame& frame, const Eigen::Vector3d& tangent) {
   return {tangent, transported<double>(frame.director, frame.tangent, tangent)};
@@ -38,8 +40,8 @@ template <class S>
 
 /// The director d1 after a turn by `angle` [rad] about the tangent.
 template <class S>
-[[nodiscard]] numerics::Vector3<S> turned(const numerics::Vector3<S>& director, const numerics::Vector3<S>& tangent,
-                                          const S& angle);
+[[nodiscard]] numerics::Vector3<S> turned(const numerics::Vector3<S>& director,
+                                          const numerics::Vector3<S>& tangent, const S& angle);
 [[nodiscard]] inline Eigen::Vector3d turned_director(const Frame& frame, double angle) {
   return turned<double>(frame.director, frame.tangent, angle);
 }
@@ -51,9 +53,10 @@ template <class S>
 /// Given the value of the last state as `near`, it follows any number of turns as long as one step changes it
 /// by less than pi.
 template <class S>
-[[nodiscard]] S twist_between(const numerics::Vector3<S>& tangent_before, const numerics::Vector3<S>& director_before,
-                              const numerics::Vector3<S>& tangent_after, const numerics::Vector3<S>& director_after,
-                              const S& near);
+[[nodiscard]] S twist_between(const numerics::Vector3<S>& tangent_before,
+                              const numerics::Vector3<S>& director_before,
+                              const numerics::Vector3<S>& tangent_after,
+                              const numerics::Vector3<S>& director_after, const S& near);
 [[nodiscard]] inline double reference_twist(const Frame& before, const Frame& after, double near) {
   return twist_between<double>(before.tangent, before.director, after.tangent, after.director, near);
 }
@@ -79,7 +82,8 @@ template <class S>
 
 template <class S>
 [[gnu::always_inline]] inline numerics::Vector3<S> turned(const numerics::Vector3<S>& director,
-                                                          const numerics::Vector3<S>& tangent, const S& angle) {
+                                                          const numerics::Vector3<S>& tangent,
+                                                          const S& angle) {
   const numerics::SineCosine<S> of = numerics::sine_cosine(angle);
   return of.cosine * director + of.sine * tangent.cross(director);
 }

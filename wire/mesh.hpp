@@ -17,8 +17,12 @@ struct Controls {
   double right = 0.0;
 
   /// Control k in this order, 0 to 2, as in derivatives by the controls.
-  [[nodiscard]] double& operator[](std::size_t k) noexcept { return k == 0 ? left : (k == 1 ? contact : right); }
-  [[nodiscard]] double operator[](std::size_t k) const noexcept { return k == 0 ? left : (k == 1 ? contact : right); }
+  [[nodiscard]] double& operator[](std::size_t k) noexcept {
+    return k == 0 ? left : (k == 1 ? contact : right);
+  }
+  [[nodiscard]] double operator[](std::size_t k) const noexcept {
+    return k == 0 ? left : (k == 1 ? contact : right);
+  }
   [[nodiscard]] bool operator==(const Controls&) const = default;
   /// Unstretched length between the mounts [m].
   [[nodiscard]] double length() const noexcept { return right - left; }
@@ -49,7 +53,8 @@ class MaterialMesh {
   [[nodiscard]] double coordinate(int i, const Controls& controls) const;
   /// Rest length of edge e [m], > 0 for increasing controls.
   [[nodiscard]] double rest_length(int e, const Controls& controls) const {
-    const double side = e < left_edges_ ? controls.contact - controls.left : controls.right - controls.contact;
+    const double side =
+        e < left_edges_ ? controls.contact - controls.left : controls.right - controls.contact;
     return rest_share_[base::at(e)] * side;
   }
   /// Derivative of the rest length of edge e by control k: -share, +share or 0 [-].

@@ -37,7 +37,8 @@ double largest_stress(const WireSpecification& wire, double tension, double bend
   const bool as_its_section = wire.construction == Construction::solid && !wire.bending_stiffness_override &&
                               !wire.yielding && wire.bending_profile.empty();
   const double d = wire.diameter;
-  const double bending = as_its_section ? 32.0 * std::abs(bending_moment) / (std::numbers::pi * d * d * d) : 0.0;
+  const double bending =
+      as_its_section ? 32.0 * std::abs(bending_moment) / (std::numbers::pi * d * d * d) : 0.0;
   return std::max(tension, 0.0) / area(wire) + bending;
 }
 
@@ -55,8 +56,9 @@ std::vector<std::string> doubts(const WireSpecification& wire) {
                                 1e-9 * wire.youngs_modulus, 1e-9 * stiffest_metal));
   }
   if (wire.density > densest_metal) {
-    found.push_back(fmt::format("the density of {:.5g} kg/m3 is above that of every metal (osmium: {:g} kg/m3)",
-                                wire.density, densest_metal));
+    found.push_back(
+        fmt::format("the density of {:.5g} kg/m3 is above that of every metal (osmium: {:g} kg/m3)",
+                    wire.density, densest_metal));
   }
   const auto compare = [&](const char* what, double stiffness, double solid) {
     if (!(stiffness > rounding * solid)) return;
@@ -75,8 +77,9 @@ std::vector<std::string> doubts(const WireSpecification& wire) {
 std::vector<std::string> overload(const WireSpecification& wire, double stress) {
   const double strength = strongest_wire(wire.diameter);
   if (!(stress > strength)) return {};
-  return {fmt::format("the stress in the wire reaches {} GPa; the strongest wire of steel of {} breaks at {:.3g} GPa",
-                      shown(1e-9 * stress), in_mm(wire.diameter), 1e-9 * strength)};
+  return {fmt::format(
+      "the stress in the wire reaches {} GPa; the strongest wire of steel of {} breaks at {:.3g} GPa",
+      shown(1e-9 * stress), in_mm(wire.diameter), 1e-9 * strength)};
 }
 
 }  // namespace snare::wire

@@ -71,8 +71,8 @@ Cell bend_elastic(double kappa, double ei, const CellLaw& law, double natural_cu
   cell.stiffness = k * (slope * slope + 0.5 * strain * kappa * slope);
   cell.by_length = 0.5 * k1 * strain * strain - k * natural_curvature * strain;
   cell.moment_by_length = (k1 * strain - k * natural_curvature) * slope;
-  cell.by_length_twice =
-      0.5 * k2 * strain * strain - 2.0 * k1 * natural_curvature * strain + k * natural_curvature * natural_curvature;
+  cell.by_length_twice = 0.5 * k2 * strain * strain - 2.0 * k1 * natural_curvature * strain +
+                         k * natural_curvature * natural_curvature;
   return cell;
 }
 
@@ -122,7 +122,8 @@ double flexibility(const PlanarEnd& end) {
 /// Factor of EI at a material coordinate.
 double profile_at(const std::vector<double>& profile, double coordinate, const Controls& controls) {
   if (profile.empty()) return 1.0;
-  const double at = (coordinate - controls.left) / controls.length() * static_cast<double>(profile.size() - 1);
+  const double at =
+      (coordinate - controls.left) / controls.length() * static_cast<double>(profile.size() - 1);
   const double cell = std::clamp(std::floor(at), 0.0, static_cast<double>(profile.size()) - 2.0);
   const auto j = static_cast<std::size_t>(cell);
   return profile[j] + (at - cell) * (profile[j + 1] - profile[j]);
@@ -140,7 +141,8 @@ Corner corner_at(int i, const std::vector<Edge>& edges, const PlanarRodPropertie
   const int last = static_cast<int>(edges.size());
   if (i == 0) {
     const Edge& after = edges.front();
-    return {direction_of(p.left), after, 0.5 * after.rest, flexibility(p.left), p.left.kind == PlanarEnd::Kind::clamp};
+    return {direction_of(p.left), after, 0.5 * after.rest, flexibility(p.left),
+            p.left.kind == PlanarEnd::Kind::clamp};
   }
   if (i == last) {
     const Edge& before = edges.back();
@@ -157,9 +159,10 @@ Cell bend_at(int i, const std::vector<Edge>& edges, const PlanarRodProperties& p
              const PlanarState& state) {
   const Corner corner = corner_at(i, edges, p);
   if (!corner.bends) return {};
-  const double factor = p.bending_profile.empty()
-                            ? 1.0
-                            : profile_at(p.bending_profile, mesh.coordinate(i, state.controls), state.controls);
+  const double factor =
+      p.bending_profile.empty()
+          ? 1.0
+          : profile_at(p.bending_profile, mesh.coordinate(i, state.controls), state.controls);
   const double* slipped = nullptr;
   if (state.memory != nullptr && !p.bending_sliders.empty()) {
     slipped = state.memory->bending.data() + base::at(i) * p.bending_sliders.size();
@@ -190,7 +193,8 @@ void fill_edges(const MaterialMesh& mesh, const PlanarState& state, std::vector<
 
 /// Forces on the two vertices of an edge, x and y of the first at `row`: -f and f of the edge (W.3), less
 /// half its weight on either.
-void add_forces(int row, const std::array<double, 2>& f, const std::array<double, 2>& half_weight, RodAssembly& out) {
+void add_forces(int row, const std::array<double, 2>& f, const std::array<double, 2>& half_weight,
+                RodAssembly& out) {
   double* near = out.gradient.data() + row;
   double* far = near + PlanarRod::block;
   for (std::size_t r = 0; r < 2; ++r) {
@@ -351,10 +355,11 @@ void assemble_into(const PlanarRod& rod, const PlanarState& state, const std::ar
       const double bxy = (axial - lateral) * edge.tx * edge.ty;
       const double byy = (axial - lateral) * edge.ty * edge.ty + lateral;
       const double twist = -turn / (edge.length * edge.length);
-      add_edge_stiffness(2 * e,
-                         {bxx - 2.0 * twist * edge.tx * edge.ty, bxy + twist * (edge.tx * edge.tx - edge.ty * edge.ty),
-                          byy + 2.0 * twist * edge.tx * edge.ty},
-                         out.hessian);
+      add_edge_stiffness(
+          2 * e,
+          {bxx - 2.0 * twist * edge.tx * edge.ty, bxy + twist * (edge.tx * edge.tx - edge.ty * edge.ty),
+           byy + 2.0 * twist * edge.tx * edge.ty},
+          out.hessian);
     }
 
     // By the rest length, through the edge and through the two cells it belongs to.
@@ -362,7 +367,8 @@ void assemble_into(const PlanarRod& rod, const PlanarState& state, const std::ar
     const double middle_y = 0.5 * (state.q[2 * e + 1] + state.q[2 * e + 3]);
     const double weight_work = wx * middle_x + wy * middle_y;
     out.energy += section.energy * edge.rest - edge.rest * weight_work;
-    const double by_rest = section.energy - stretch * tension - weight_work + 0.5 * (left.by_length + right.by_length);
+    const double by_rest =
+        section.energy - stretch * tension - weight_work + 0.5 * (left.by_length + right.by_length);
     for (int k = 0; k < 3; ++k) {
       const double share = mesh.rest_length_derivative(e, k);
       if (share == 0.0) continue;
@@ -417,7 +423,8 @@ void assemble_into(const PlanarRod& rod, const PlanarState& state, const std::ar
 
 }  // namespace
 
-void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wanted, RodAssembly& out) const {
+void PlanarRod::assemble(const PlanarState& state, const std::array<bool, 3>& wanted,
+                         RodAssembly& out) const {
   assemble_into<true>(*this, state, wanted, out);
 }
 
@@ -524,7 +531,8 @@ SectionMemory PlanarRod::remembered(const PlanarState& state) const {
   for (int i = 0; i <= mesh_.edges() && bending > 0; ++i) {
     const Corner corner = corner_at(i, edges, p);
     if (!corner.bends || corner.mount_flexibility > 0.0) continue;
-    slide(p.bending_sliders, integrated_curvature(corner.before, corner.after) / corner.length - p.natural_curvature,
+    slide(p.bending_sliders,
+          integrated_curvature(corner.before, corner.after) / corner.length - p.natural_curvature,
           result.bending.data() + base::at(i) * bending);
   }
   for (int e = 0; e < mesh_.edges() && axial > 0; ++e) {
@@ -535,8 +543,8 @@ SectionMemory PlanarRod::remembered(const PlanarState& state) const {
   if (state.memory != nullptr && state.memory->controls != state.controls) {
     const auto carry = [&](const std::vector<double>& old, std::vector<double>& now, std::size_t elements,
                            bool of_edges) {
-      const std::vector<double> carried =
-          carried_over(mesh_, old, static_cast<int>(elements), of_edges, state.memory->controls, state.controls);
+      const std::vector<double> carried = carried_over(mesh_, old, static_cast<int>(elements), of_edges,
+                                                       state.memory->controls, state.controls);
       for (std::size_t i = 0; i < now.size(); ++i) now[i] += carried[i] - old[i];
     };
     carry(state.memory->bending, result.bending, bending, false);

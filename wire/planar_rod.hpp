@@ -30,8 +30,9 @@ struct PlanarEnd {
 
 /// Constants of a planar rod.
 struct PlanarRodProperties {
-  double bending_stiffness = 0.0;  ///< EI [N m^2], > 0; beside `bending_sliders` the part that is elastic for good
-  double axial_stiffness = 0.0;    ///< EA [N], > 0; likewise
+  double bending_stiffness =
+      0.0;  ///< EI [N m^2], > 0; beside `bending_sliders` the part that is elastic for good
+  double axial_stiffness = 0.0;                ///< EA [N], > 0; likewise
   std::vector<SliderElement> bending_sliders;  ///< on curvature less the natural one
   std::vector<SliderElement> axial_sliders;    ///< on the axial strain
   /// Factor of EI along the wire: at stations evenly spread over the material between the mounts, linear

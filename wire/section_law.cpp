@@ -52,7 +52,8 @@ std::vector<SliderElement> strand_sliders(const StrandFriction& friction) {
   std::vector<SliderElement> elements;
   for (int i = 0; i < shares; ++i) {
     const double at = 2.0 * (i + 0.5) / shares - 1.0;
-    elements.push_back({friction.extra_stiffness / shares, friction.slip_curvature * std::exp(friction.breadth * at)});
+    elements.push_back(
+        {friction.extra_stiffness / shares, friction.slip_curvature * std::exp(friction.breadth * at)});
   }
   return elements;
 }

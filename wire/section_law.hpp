@@ -18,7 +18,8 @@ struct SliderElement {
 struct SectionResponse {
   double resultant = 0.0;  ///< moment [N m] or axial force [N]
   double tangent = 0.0;    ///< d resultant / d strain
-  double energy = 0.0;     ///< stored, plus what slipping dissipates on the way from the memory, a unit length [J/m]
+  double energy =
+      0.0;  ///< stored, plus what slipping dissipates on the way from the memory, a unit length [J/m]
 };
 
 /// Elastic spring beside sliders (Masing 1926, Iwan 1967).                           theory.md (W.13)
@@ -29,8 +30,8 @@ struct SectionResponse {
 /// when they slip); many describe a section that yields from its outer fibres inwards. elastic: k0 > 0.
 /// slipped: p_j of every element, or null for a virgin section (all zero).
 /// Of bending: elastic [N m^2], strain and slipped [1/m]; of stretching [N], [-].
-[[nodiscard]] SectionResponse respond(double elastic, const std::vector<SliderElement>& elements, double strain,
-                                      const double* slipped);
+[[nodiscard]] SectionResponse respond(double elastic, const std::vector<SliderElement>& elements,
+                                      double strain, const double* slipped);
 
 /// Moves the sliders, p_j [1/m] or [-], to where the strain leaves them.
 void slide(const std::vector<SliderElement>& elements, double strain, double* slipped);
@@ -59,6 +60,7 @@ struct SectionMemory {
 /// Carries values at the mesh's vertices (or, `of_edges`, at the middles of its edges) over to where other controls put
 /// them, by linear interpolation in the material coordinate; material that comes in at a mount is virgin (zero). In their units.
 [[nodiscard]] std::vector<double> carried_over(const MaterialMesh& mesh, const std::vector<double>& values,
-                                               int components, bool of_edges, const Controls& from, const Controls& to);
+                                               int components, bool of_edges, const Controls& from,
+                                               const Controls& to);
 
 }  // namespace snare::wire

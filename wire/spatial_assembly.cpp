@@ -107,7 +107,8 @@ bool feels_controls(const MaterialMesh& mesh, int i, int n, std::array<double, 3
 
 }  // namespace
 
-void SpatialRod::assemble(const SpatialState& state, const std::array<bool, 3>& wanted, RodAssembly& out) const {
+void SpatialRod::assemble(const SpatialState& state, const std::array<bool, 3>& wanted,
+                          RodAssembly& out) const {
   reset(out, unknowns(), wanted);
   const int n = mesh_.edges();
   const CellTerms terms(properties_, strains_);
@@ -183,7 +184,8 @@ void SpatialRod::assemble(const SpatialState& state, const std::array<bool, 3>& 
     }
   };
 
-  const auto add_cell = [&](int i, const SpatialCell& cell, const SpatialEdge& before, const SpatialEdge& after) {
+  const auto add_cell = [&](int i, const SpatialCell& cell, const SpatialEdge& before,
+                            const SpatialEdge& after) {
     EdgeBlock following;
     if (cell.bends || cell.twists) {
       out.energy += cell.energy;

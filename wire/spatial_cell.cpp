@@ -45,14 +45,15 @@ SpatialEdge mount_edge(const SpatialEnd& end, const std::optional<Frame>& frame,
   return edge;
 }
 
-SpatialCell cell_at(int i, int n, const SpatialEdge& before, const SpatialEdge& after, const SpatialState& state,
-                    const CellTerms& terms) {
+SpatialCell cell_at(int i, int n, const SpatialEdge& before, const SpatialEdge& after,
+                    const SpatialState& state, const CellTerms& terms) {
   const SpatialRodProperties& p = terms.properties;
   SpatialCell cell;
   const SpatialEnd* end = i == 0 ? &p.left : (i == n ? &p.right : nullptr);
   if (end != nullptr && !end->orients()) return cell;
   // l = (h_{i-1} + h_i)/2; at a mount half of the one rest length there is.
-  const double length = end == nullptr ? 0.5 * (before.rest + after.rest) : 0.5 * (i == 0 ? after.rest : before.rest);
+  const double length =
+      end == nullptr ? 0.5 * (before.rest + after.rest) : 0.5 * (i == 0 ? after.rest : before.rest);
   cell.turn = make_turn<double>(before.tangent, after.tangent);
   cell.inverse = {before.inverse_length, after.inverse_length};
   const double tau = after.theta - before.theta + state.reference_twist[base::at(i)];  // (W.26)
@@ -88,8 +89,10 @@ PairGradient gradient_of(const SpatialCell& cell, const SpatialEdge& before, con
 }
 
 // The same with d2E/dc dl, d2E/dkappa_j dl, d2E/dtau dl as factors.
-PairGradient gradient_by_length(const SpatialCell& cell, const SpatialEdge& before, const SpatialEdge& after) {
-  return weighted_gradient(cell, before, after, cell.cosine_by_length, cell.kappa_by_length, cell.torque_by_length);
+PairGradient gradient_by_length(const SpatialCell& cell, const SpatialEdge& before,
+                                const SpatialEdge& after) {
+  return weighted_gradient(cell, before, after, cell.cosine_by_length, cell.kappa_by_length,
+                           cell.torque_by_length);
 }
 
 // d2E = dE/dc d2c + d2E/dc2 dc^2 + dE/dtau d2tau + d2E/dtau2 dtau^2
@@ -117,8 +120,9 @@ Vector3d moment_of(const SpatialCell& cell, const SpatialEdge& before, const Spa
   Vector3d moment = Vector3d::Zero();
   if (cell.bends) moment -= 0.5 * cell.by_cosine * cell.turn.chi * cell.turn.binormal;
   if (cell.directed) {
-    moment += WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa[0], cell.by_kappa[1])
-                  .by_rotation();
+    moment +=
+        WeightedCurvature(cell.turn, before.directors, after.directors, cell.by_kappa[0], cell.by_kappa[1])
+            .by_rotation();
   }
   if (cell.twists) moment += cell.torque * cell.turn.mean;
   return moment;

@@ -67,11 +67,14 @@ void add_bending(const DirectorsOf<S>& before, const DirectorsOf<S>& after, cons
                  const CellTerms& terms, SpatialCellOf<S>& cell);
 /// tau: integrated twist [rad].
 template <class S>
-void add_twisting(const S& tau, const S& l, double flexibility, const CellTerms& terms, SpatialCellOf<S>& cell);
+void add_twisting(const S& tau, const S& l, double flexibility, const CellTerms& terms,
+                  SpatialCellOf<S>& cell);
 
 /// Edge e at a state, between its vertices; and a mount in the place of an edge, with its direction and directors if it orients.
-[[nodiscard]] SpatialEdge edge_at(int e, const MaterialMesh& mesh, const SpatialState& state, const CellTerms& terms);
-[[nodiscard]] SpatialEdge mount_edge(const SpatialEnd& end, const std::optional<Frame>& frame, const CellTerms& terms);
+[[nodiscard]] SpatialEdge edge_at(int e, const MaterialMesh& mesh, const SpatialState& state,
+                                  const CellTerms& terms);
+[[nodiscard]] SpatialEdge mount_edge(const SpatialEnd& end, const std::optional<Frame>& frame,
+                                     const CellTerms& terms);
 
 /// Vertex i of n edges. `before`, `after`: its edges; at an end the mount stands for the outer one, and half
 /// a cell for the whole.                                                                     theory.md (W.28)
@@ -79,14 +82,17 @@ void add_twisting(const S& tau, const S& l, double flexibility, const CellTerms&
                                   const SpatialState& state, const CellTerms& terms);
 
 /// First and second derivatives of the cell's energy by its edges and their angles.
-[[nodiscard]] PairGradient gradient_of(const SpatialCell& cell, const SpatialEdge& before, const SpatialEdge& after);
-[[nodiscard]] PairHessian hessian_of(const SpatialCell& cell, const SpatialEdge& before, const SpatialEdge& after);
+[[nodiscard]] PairGradient gradient_of(const SpatialCell& cell, const SpatialEdge& before,
+                                       const SpatialEdge& after);
+[[nodiscard]] PairHessian hessian_of(const SpatialCell& cell, const SpatialEdge& before,
+                                     const SpatialEdge& after);
 /// Derivative of the cell's gradient by its length l.
 [[nodiscard]] PairGradient gradient_by_length(const SpatialCell& cell, const SpatialEdge& before,
                                               const SpatialEdge& after);
 /// Derivative of the cell's energy by a rigid rotation of all that follows the vertex [N m].
 ///                                                                                           theory.md (W.29)
-[[nodiscard]] Eigen::Vector3d moment_of(const SpatialCell& cell, const SpatialEdge& before, const SpatialEdge& after);
+[[nodiscard]] Eigen::Vector3d moment_of(const SpatialCell& cell, const SpatialEdge& before,
+                                        const SpatialEdge& after);
 
 // Here, for the compiler to put in where wires in motion spend their time.
 
@@ -113,8 +119,9 @@ template <class S>
 //   E = 1/4 (k_1 + k_2)|kb|^2 + 1/4 (k_1 - k_2)(kappa_1^2 - kappa_2^2) + sum_j k_j n_j l (n_j l/2 - kappa_j)
 // n_j: natural curvatures. ' below is d/dl.
 template <class S>
-[[gnu::always_inline]] inline void add_bending(const DirectorsOf<S>& before, const DirectorsOf<S>& after, const S& l,
-                                               double flexibility, const CellTerms& terms, SpatialCellOf<S>& cell) {
+[[gnu::always_inline]] inline void add_bending(const DirectorsOf<S>& before, const DirectorsOf<S>& after,
+                                               const S& l, double flexibility, const CellTerms& terms,
+                                               SpatialCellOf<S>& cell) {
   const SpatialRodProperties& p = terms.properties;
   cell.bends = true;
   const SeriesStiffness<S> k1 = in_series(l, p.bending_stiffness, flexibility);
@@ -170,8 +177,8 @@ template <class S>
 //   dE/dtau = k s,   d2E/dtau2 = k,   d2E/dtau dl = k' s - k n,
 //   dE/dl = 1/2 k' s^2 - k n s,   d2E/dl2 = 1/2 k'' s^2 - 2 k' n s + k n^2
 template <class S>
-[[gnu::always_inline]] inline void add_twisting(const S& tau, const S& l, double flexibility, const CellTerms& terms,
-                                                SpatialCellOf<S>& cell) {
+[[gnu::always_inline]] inline void add_twisting(const S& tau, const S& l, double flexibility,
+                                                const CellTerms& terms, SpatialCellOf<S>& cell) {
   const SpatialRodProperties& p = terms.properties;
   cell.twists = true;
   const SeriesStiffness<S> k = in_series(l, p.torsional_stiffness, flexibility);
@@ -182,12 +189,14 @@ template <class S>
   cell.twist_stiffness = k.k;
   cell.torque_by_length = k.first * strain - k.k * natural;
   cell.by_length += 0.5 * k.first * strain * strain - k.k * natural * strain;
-  cell.by_length_twice += 0.5 * k.second * strain * strain - 2.0 * k.first * natural * strain + k.k * natural * natural;
+  cell.by_length_twice +=
+      0.5 * k.second * strain * strain - 2.0 * k.first * natural * strain + k.k * natural * natural;
 }
 
 /// Calls visit(i, cell, before, after) at every vertex in order.
 template <class Visitor>
-void visit_cells(const MaterialMesh& mesh, const SpatialState& state, const CellTerms& terms, const Visitor& visit) {
+void visit_cells(const MaterialMesh& mesh, const SpatialState& state, const CellTerms& terms,
+                 const Visitor& visit) {
   const int n = mesh.edges();
   assert(state.q.size() == SpatialState::block * (n + 1) && static_cast<int>(state.frames.size()) == n &&
          "a state is made by make_state");

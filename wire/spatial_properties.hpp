@@ -35,7 +35,9 @@ struct SpatialEnd {
   /// Whether the mount has a direction and a director that the rod feels.
   [[nodiscard]] bool orients() const noexcept { return kind == Kind::clamp || kind == Kind::twisting_pin; }
   /// Whether the mount holds the wire along x by a spring.
-  [[nodiscard]] bool gives() const noexcept { return kind != Kind::free && !std::isinf(translational_stiffness); }
+  [[nodiscard]] bool gives() const noexcept {
+    return kind != Kind::free && !std::isinf(translational_stiffness);
+  }
   /// 1/2 k (x - X)^2 of that spring [J].                                                      theory.md (W.6)
   [[nodiscard]] double spring_energy(double x) const noexcept {
     if (!gives()) return 0.0;
@@ -52,10 +54,10 @@ enum class Strains {
 
 /// Constants of a uniform spatial rod.
 struct SpatialRodProperties {
-  double bending_stiffness = 0.0;                               ///< EI_1 of kappa_1, towards director m1 [N m^2], > 0
-  double second_bending_stiffness = 0.0;                        ///< EI_2 of kappa_2, towards director m2 [N m^2], > 0
-  double torsional_stiffness = 0.0;                             ///< GJ [N m^2], > 0
-  double axial_stiffness = 0.0;                                 ///< EA [N], > 0
+  double bending_stiffness = 0.0;         ///< EI_1 of kappa_1, towards director m1 [N m^2], > 0
+  double second_bending_stiffness = 0.0;  ///< EI_2 of kappa_2, towards director m2 [N m^2], > 0
+  double torsional_stiffness = 0.0;       ///< GJ [N m^2], > 0
+  double axial_stiffness = 0.0;           ///< EA [N], > 0
   Eigen::Vector2d natural_curvature = Eigen::Vector2d::Zero();  ///< of kappa_1, kappa_2 [1/m]
   double natural_twist = 0.0;                                   ///< [rad/m]
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();             ///< force per unstretched length [N/m]

@@ -81,13 +81,14 @@ double SpatialRod::energy(const SpatialState& state) const {
                properties_.right.spring_energy(state.q[row_of(End::right)]);
   const int n = mesh_.edges();
   const CellTerms terms(properties_, strains_);
-  visit_cells(mesh_, state, terms, [&](int i, const SpatialCell& cell, const SpatialEdge&, const SpatialEdge& after) {
-    sum += cell.energy;
-    if (i == n) return;
-    const double strain = after.length / after.rest - 1.0;
-    sum += 0.5 * terms.axial_stiffness * strain * strain * after.rest;
-    sum -= 0.5 * after.rest * properties_.weight.dot(vertex(state, i) + vertex(state, i + 1));
-  });
+  visit_cells(mesh_, state, terms,
+              [&](int i, const SpatialCell& cell, const SpatialEdge&, const SpatialEdge& after) {
+                sum += cell.energy;
+                if (i == n) return;
+                const double strain = after.length / after.rest - 1.0;
+                sum += 0.5 * terms.axial_stiffness * strain * strain * after.rest;
+                sum -= 0.5 * after.rest * properties_.weight.dot(vertex(state, i) + vertex(state, i + 1));
+              });
   return sum;
 }
 
@@ -99,12 +100,15 @@ struct MountedCell {
   SpatialCell cell;
 };
 
-MountedCell mounted_cell(const MaterialMesh& mesh, const SpatialState& state, const CellTerms& terms, End end) {
+MountedCell mounted_cell(const MaterialMesh& mesh, const SpatialState& state, const CellTerms& terms,
+                         End end) {
   const int n = mesh.edges();
   const bool left = end == End::left;
   MountedCell m;
-  m.before = left ? mount_edge(terms.properties.left, state.left_mount, terms) : edge_at(n - 1, mesh, state, terms);
-  m.after = left ? edge_at(0, mesh, state, terms) : mount_edge(terms.properties.right, state.right_mount, terms);
+  m.before =
+      left ? mount_edge(terms.properties.left, state.left_mount, terms) : edge_at(n - 1, mesh, state, terms);
+  m.after =
+      left ? edge_at(0, mesh, state, terms) : mount_edge(terms.properties.right, state.right_mount, terms);
   m.cell = cell_at(left ? 0 : n, n, m.before, m.after, state, terms);
   return m;
 }
@@ -160,7 +164,9 @@ std::array<Vector3d, 2> SpatialRod::end_moments(const SpatialState& state) const
 Eigen::VectorXd SpatialRod::torques(const SpatialState& state) const {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(mesh_.vertices());
   visit_cells(mesh_, state, CellTerms(properties_, strains_),
-              [&](int i, const SpatialCell& cell, const SpatialEdge&, const SpatialEdge&) { result[i] = cell.torque; });
+              [&](int i, const SpatialCell& cell, const SpatialEdge&, const SpatialEdge&) {
+                result[i] = cell.torque;
+              });
   return result;
 }
 

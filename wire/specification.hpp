@@ -16,7 +16,7 @@ enum class Construction { solid, strand };
 struct StrandFriction {
   double extra_stiffness = 0.0;  ///< of all while they stick [N m^2], > 0
   double slip_curvature = 0.0;   ///< the middle one, in logarithms [1/m], > 0
-  double breadth = 0.0;          ///< from slip_curvature exp(-breadth) to slip_curvature exp(breadth) [-], >= 0
+  double breadth = 0.0;  ///< from slip_curvature exp(-breadth) to slip_curvature exp(breadth) [-], >= 0
 };
 
 /// Metal that yields: elastic up to the yield stress, then with hardening_ratio of the stiffness; fibre by
@@ -39,7 +39,7 @@ struct WireSpecification {
   std::optional<double> bending_stiffness_override;    ///< EI [N m^2], > 0
   std::optional<double> axial_stiffness_override;      ///< EA [N], > 0
   std::optional<double> torsional_stiffness_override;  ///< GJ [N m^2], > 0
-  double natural_curvature = 0.0;                      ///< in the plane of the bulge, positive with the bulge [1/m]
+  double natural_curvature = 0.0;  ///< in the plane of the bulge, positive with the bulge [1/m]
   std::optional<StrandFriction> strand_friction;
   std::optional<Yielding> yielding;
   /// Factor of EI at stations evenly spread over the wire between the mounts, each > 0; empty: uniform.
@@ -73,8 +73,8 @@ enum class SlipPlace { left, right, both };
 /// The two mounts; the chord runs along +x from the left mount at the origin, the bulge towards +y.
 struct MountSpecification {
   MountKind kind = MountKind::clamped;
-  double span = 0.0;                              ///< distance of the mounts (or of the supports' centres) [m], > 0
-  double support_radius = 0.0;                    ///< supports only [m], >= 0
+  double span = 0.0;            ///< distance of the mounts (or of the supports' centres) [m], > 0
+  double support_radius = 0.0;  ///< supports only [m], >= 0
   std::optional<double> translational_stiffness;  ///< each mount, along the chord [N/m]; rigid when absent
   std::optional<double> rotational_stiffness;     ///< each clamp, all axes [N m/rad]; rigid when absent
   /// Of the left and the right mount by itself, in series with the stiffness of both [m/N], [rad/(N m)].

@@ -16,16 +16,17 @@ void add_twist_gradient(const TurnOf<S>& turn, const InverseLengthsOf<S>& invers
 ///   |a|^2 d2m/da2 = -1/4 (kb (t + mean)^T + (t + mean) kb^T),
 ///   |a||b| d2m/da db = 1/2 (2 [t]_x/chi - kb mean^T).
 template <class S>
-void add_twist_hessian(const TurnOf<S>& turn, const InverseLengthsOf<S>& inverse, const S& moment, const S& stiffness,
-                       PairHessianOf<S>& out);
+void add_twist_hessian(const TurnOf<S>& turn, const InverseLengthsOf<S>& inverse, const S& moment,
+                       const S& stiffness, PairHessianOf<S>& out);
 
 // Here, for the compiler to put in where wires in motion spend their time.
 
 // (W.26)  tau = theta_+ - theta_- + m:   dm/da = kb/(2 |a|),   dm/db = kb/(2 |b|).
 // An energy of tau with torque M = dE/dtau (`moment`) has the gradient M dtau.
 template <class S>
-[[gnu::always_inline]] inline void add_twist_gradient(const TurnOf<S>& turn, const InverseLengthsOf<S>& inverse,
-                                                      const S& moment, PairGradientOf<S>& out) {
+[[gnu::always_inline]] inline void add_twist_gradient(const TurnOf<S>& turn,
+                                                      const InverseLengthsOf<S>& inverse, const S& moment,
+                                                      PairGradientOf<S>& out) {
   out.a += (0.5 * moment * inverse.a) * turn.binormal;
   out.b += (0.5 * moment * inverse.b) * turn.binormal;
   out.theta_a -= moment;
@@ -39,8 +40,9 @@ template <class S>
 // Of the first two the symmetric part is taken, -1/4 (kb x^T + x kb^T) with x = t + mean or u + mean: the
 // skew part belongs to the holonomy of the transport and is no second derivative.
 template <class S>
-[[gnu::always_inline]] inline void add_twist_hessian(const TurnOf<S>& turn, const InverseLengthsOf<S>& inverse,
-                                                     const S& moment, const S& stiffness, PairHessianOf<S>& out) {
+[[gnu::always_inline]] inline void add_twist_hessian(const TurnOf<S>& turn,
+                                                     const InverseLengthsOf<S>& inverse, const S& moment,
+                                                     const S& stiffness, PairHessianOf<S>& out) {
   const Vector3<S>& t = turn.before;
   const Vector3<S>& u = turn.after;
   const Vector3<S>& kb = turn.binormal;

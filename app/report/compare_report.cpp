@@ -14,7 +14,8 @@ using namespace results;
 
 namespace {
 
-constexpr double far_off = 0.5;  // of the range of the force: the error of a model that would dwarf the others
+constexpr double far_off =
+    0.5;  // of the range of the force: the error of a model that would dwarf the others
 
 /// What to show first where a model is far off: all of the others.
 void close_up(PlotSpecification& plot, const std::vector<double>& shown, bool dwarfed) {
@@ -29,8 +30,9 @@ void close_up(PlotSpecification& plot, const std::vector<double>& shown, bool dw
 
 std::string compare_report_html(const std::string& title, const std::vector<reduction::CaseComparison>& cases,
                                 bool interrupted) {
-  ReportPage page(title.empty() ? "Models of a snare wire compared" : title,
-                  "Accuracy against the full wire and the measured force, cost, range and numbers of every model.");
+  ReportPage page(
+      title.empty() ? "Models of a snare wire compared" : title,
+      "Accuracy against the full wire and the measured force, cost, range and numbers of every model.");
   page.doubts({}, interrupted);
   for (const reduction::CaseComparison& one : cases) {
     page.heading(one.name);
@@ -50,7 +52,8 @@ std::string compare_report_html(const std::string& title, const std::vector<redu
     PlotSpecification force{"Force", {"travel", "mm"}, {"force", "N"}};
     PlotSpecification error{"Error against the full wire", {"travel", "mm"}, {"model less full wire", "N"}};
     const Values travel = in_mm(one.travel);
-    if (!one.measured.empty()) force.curves.push_back({"measured", travel, one.measured, CurveStyle::points, 0});
+    if (!one.measured.empty())
+      force.curves.push_back({"measured", travel, one.measured, CurveStyle::points, 0});
     const reduction::ModelResult& full = one.models.front();
     int colour = 1;
     bool dwarfed = false;
@@ -61,11 +64,13 @@ std::string compare_report_html(const std::string& title, const std::vector<redu
       if (!far) forces.insert(forces.end(), m.force.begin(), m.force.end());
       table.rows.push_back(
           {m.model, format_significant(m.largest_error),
-           one.force_range > 0.0 ? format_significant(100.0 * m.largest_error / one.force_range, 2) + " %" : "-",
+           one.force_range > 0.0 ? format_significant(100.0 * m.largest_error / one.force_range, 2) + " %"
+                                 : "-",
            format_significant(m.rms_error), m.measured_rms ? format_significant(*m.measured_rms) : "-",
            format_significant(m.seconds, 2), format_significant(full.seconds / m.seconds, 2),
            format_number(1e3 * m.range.high, 4), std::to_string(m.parameters), m.why});
-      force.curves.push_back({m.model, travel, m.force, &m == &full ? CurveStyle::line : CurveStyle::dashes, colour});
+      force.curves.push_back(
+          {m.model, travel, m.force, &m == &full ? CurveStyle::line : CurveStyle::dashes, colour});
       if (&m != &full) {
         std::vector<double> off = m.force;
         for (std::size_t i = 0; i < off.size(); ++i) off[i] -= full.force[i];

@@ -21,7 +21,8 @@ std::string at(const DistilledPlace& place) {
 }
 
 void add_stiffness(ReportPage& page, const DistilledCase& one) {
-  PlotSpecification secant{"Spring of the linear spring-dashpot law", {"travel", "mm"}, {"stiffness F/d", "N/m"}};
+  PlotSpecification secant{
+      "Spring of the linear spring-dashpot law", {"travel", "mm"}, {"stiffness F/d", "N/m"}};
   PlotSpecification tangent{"Tangent stiffness", {"travel", "mm"}, {"stiffness dF/dd", "N/m"}};
   secant.note = "Larger penetration, larger stiffness; compare Abiko et al., Fig. 11.";
   int colour = 0;
@@ -34,7 +35,8 @@ void add_stiffness(ReportPage& page, const DistilledCase& one) {
   page.line_plot(secant);
   PlotSpecification recorded{
       "The same over the recorded displacement", {"recorded displacement", "mm"}, {"stiffness F/d", "N/m"}};
-  recorded.note = "With the displacement that the machine had recorded at first touch, as in Abiko et al., Fig. 11.";
+  recorded.note =
+      "With the displacement that the machine had recorded at first touch, as in Abiko et al., Fig. 11.";
   colour = 0;
   for (const DistilledPlace& place : one.places) {
     if (place.recorded) {
@@ -84,8 +86,9 @@ void add_laws(ReportPage& page, const DistilledPlace& place) {
     };
     const reduction::LawError& e = law.error;
     forms.rows.push_back({law.form->name(), law.form->formula(), numbers});
-    table.rows.push_back({law.form->name(), format_significant(e.largest_force), format_significant(e.rms_force),
-                          share(e.largest_force, e.force_range), share(e.largest_stiffness, e.stiffness_range),
+    table.rows.push_back({law.form->name(), format_significant(e.largest_force),
+                          format_significant(e.rms_force), share(e.largest_force, e.force_range),
+                          share(e.largest_stiffness, e.stiffness_range),
                           share(e.largest_energy, e.energy_range)});
   }
   page.subheading(at(place));
@@ -96,9 +99,11 @@ void add_laws(ReportPage& page, const DistilledPlace& place) {
 }
 
 void add_map(ReportPage& page, const DistilledCase& one) {
-  PlotSpecification plot{"Where the closed forms are within 5 % of the full wire", {"slack", "mm"}, {"travel", "mm"}};
+  PlotSpecification plot{
+      "Where the closed forms are within 5 % of the full wire", {"slack", "mm"}, {"travel", "mm"}};
   plot.note = fmt::format(
-      "Nothing fitted; at mid-span, travel up to {:.4g} mm. Between the points of one slack the law is within 5 %. "
+      "Nothing fitted; at mid-span, travel up to {:.4g} mm. Between the points of one slack the law is "
+      "within 5 %. "
       "Negative slack is pretension.",
       1e3 * one.map.travel.back());
   Curve stretched{"stretched wire", {}, {}, CurveStyle::points, 1};
@@ -132,22 +137,26 @@ void add_damping(ReportPage& page, const DistilledCase& one) {
   page.heading("Damping");
   if (one.wire.dissipates())
     page.paragraph(
-        "Friction and strands lose the same at any rate: their loop and the load/unload law are in law.json, no c.");
+        "Friction and strands lose the same at any rate: their loop and the load/unload law are in law.json, "
+        "no c.");
   if (one.places.front().impacts.empty()) {
     page.paragraph("No impacts were asked, so no dashpot is given: see [damping] of the wire file.");
     return;
   }
   page.paragraph(
-      "A body on a slide along the push meets the full wire in motion. The dashpot c makes the law L(d) + c d' return "
+      "A body on a slide along the push meets the full wire in motion. The dashpot c makes the law L(d) + c "
+      "d' return "
       "the body with the same "
-      "speed; it stands for all that the body loses, to the material and to the vibration that stays in the wire.");
+      "speed; it stands for all that the body loses, to the material and to the vibration that stays in the "
+      "wire.");
   Table table{"",
               {"Position"_text, "Speed [m/s]"_number, "Restitution"_number, "c [N s/m]"_number,
                "Peak, full wire [N]"_number, "Peak, law [N]"_number, "Largest travel [mm]"_number}};
   for (const DistilledPlace& place : one.places) {
     for (const reduction::ImpactDamping& i : place.impacts) {
       table.rows.push_back({at(place), format_significant(i.speed), format_significant(i.restitution),
-                            i.damping ? format_significant(*i.damping) : "-", format_significant(i.peak_force),
+                            i.damping ? format_significant(*i.damping) : "-",
+                            format_significant(i.peak_force),
                             i.damping ? format_significant(i.law_peak_force) : "-",
                             format_significant(1e3 * i.largest_travel)});
     }
@@ -165,7 +174,8 @@ std::string distil_report_html(const reduction::WireFile& file, const reduction:
     const DistilledCase& one = distillation.cases[c];
     const reduction::TableError& e = one.table.loading_error;
     const auto& axes = one.table.loading->axes();
-    page.heading(distillation.cases.size() == 1 ? "The exact table" : fmt::format("Case {}: the exact table", c + 1));
+    page.heading(distillation.cases.size() == 1 ? "The exact table"
+                                                : fmt::format("Case {}: the exact table", c + 1));
     page.key_figures({{"Knots", fmt::format("{} x {} x {}", axes[0].size(), axes[1].size(), axes[2].size()),
                        "travel, position, slack"},
                       {"Stated bound", format_significant(100.0 * e.bound / e.force_range, 2) + " %",

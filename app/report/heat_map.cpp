@@ -23,15 +23,16 @@ std::string colour(double share) {
   const auto k = std::min(static_cast<std::size_t>(at), stops.size() - 2);
   std::array<int, 3> rgb{};
   for (std::size_t c = 0; c < rgb.size(); ++c)
-    rgb[c] =
-        static_cast<int>(std::lround(stops[k][c] + (at - static_cast<double>(k)) * (stops[k + 1][c] - stops[k][c])));
+    rgb[c] = static_cast<int>(
+        std::lround(stops[k][c] + (at - static_cast<double>(k)) * (stops[k + 1][c] - stops[k][c])));
   return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
 }
 
 std::string text(double x, double y, const char* anchor, const std::string& words, const char* more = "") {
   return fmt::format(
-      "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"12\" fill=\"currentColor\"{}>{}</text>\n", x, y,
-      anchor, more, escape_html(words));
+      "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"12\" "
+      "fill=\"currentColor\"{}>{}</text>\n",
+      x, y, anchor, more, escape_html(words));
 }
 
 void check(const HeatMap& map) {
@@ -39,8 +40,8 @@ void check(const HeatMap& map) {
     return edges.size() > 1 && std::ranges::all_of(edges, [](double e) { return std::isfinite(e); }) &&
            std::ranges::is_sorted(edges) && edges.front() < edges.back();
   };
-  if (!ascending(map.x_edges) || !ascending(map.y_edges) || !std::isfinite(map.low) || !std::isfinite(map.high) ||
-      map.cells.size() != (map.x_edges.size() - 1) * (map.y_edges.size() - 1))
+  if (!ascending(map.x_edges) || !ascending(map.y_edges) || !std::isfinite(map.low) ||
+      !std::isfinite(map.high) || map.cells.size() != (map.x_edges.size() - 1) * (map.y_edges.size() - 1))
     throw std::invalid_argument("heat map " + map.title + ": edges or cells do not fit together");
 }
 
@@ -70,12 +71,14 @@ std::string heat_map(const HeatMap& map) {
     const std::size_t i = k % columns, j = k / columns;
     const double x = px(map.x_edges[i]), y = py(map.y_edges[j + 1]);
     svg += fmt::format(
-        "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\"{}><title>{}</title></rect>\n",
+        "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" "
+        "fill=\"{}\"{}><title>{}</title></rect>\n",
         x, y, px(map.x_edges[i + 1]) - x, py(map.y_edges[j]) - y, colour((cell.value - map.low) / size),
         cell.pale ? " fill-opacity=\"0.5\"" : "", escape_html(cell.hint));
   }
-  svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"currentColor\"/>\n",
-                     left, top, w, h);
+  svg += fmt::format(
+      "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"currentColor\"/>\n", left,
+      top, w, h);
   constexpr int ticks = 4;
   for (int t = 0; t <= ticks; ++t) {
     const double share = static_cast<double>(t) / ticks;
@@ -88,9 +91,9 @@ std::string heat_map(const HeatMap& map) {
   }
   constexpr int steps = 32;
   for (int s = 0; s < steps; ++s) {
-    svg +=
-        fmt::format("<rect x=\"{}\" y=\"{:.2f}\" width=\"14\" height=\"{:.2f}\" fill=\"{}\"/>\n", width - right + 16.0,
-                    top + h * (1.0 - static_cast<double>(s + 1) / steps), h / steps + 0.5, colour((s + 0.5) / steps));
+    svg += fmt::format("<rect x=\"{}\" y=\"{:.2f}\" width=\"14\" height=\"{:.2f}\" fill=\"{}\"/>\n",
+                       width - right + 16.0, top + h * (1.0 - static_cast<double>(s + 1) / steps),
+                       h / steps + 0.5, colour((s + 0.5) / steps));
   }
   svg += text(left + 0.5 * w, height - 14.0, "middle", map.x);
   svg += text(16.0, top + 0.5 * h, "middle", map.y,

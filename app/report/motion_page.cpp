@@ -23,7 +23,8 @@ using coupling::MotionSample;
 
 /// A number of every sample over time.
 template <class Number>
-Curve time_curve(const std::string& name, int colour, const std::vector<MotionSample>& samples, const Number& number) {
+Curve time_curve(const std::string& name, int colour, const std::vector<MotionSample>& samples,
+                 const Number& number) {
   Curve curve{name, {}, {}, CurveStyle::line, colour};
   for (const MotionSample& s : samples) {
     curve.x.push_back(s.time);
@@ -43,9 +44,9 @@ void add_balance(const coupling::MotionResult& r, ReportPage& page) {
 }
 
 void add_contacts(const FinishedMotion& run, ReportPage& page) {
-  Table table{
-      "",
-      {"Contact"_code, "Peak force [N]"_number, "First touch [s]"_number, "Touches"_number, "Points at a time"_number}};
+  Table table{"",
+              {"Contact"_code, "Peak force [N]"_number, "First touch [s]"_number, "Touches"_number,
+               "Points at a time"_number}};
   const std::vector<std::string> contacts = run.asked.motion.contact_names();
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Touches touches = touches_of(run.result, k);
@@ -85,7 +86,8 @@ void add_left_out(const FinishedMotion& run, ReportPage& page) {
     const coupling::MotionWire& wire = run.asked.motion.wires[k];
     const coupling::LeftOutInertia& left_out = run.result.left_out[k];
     if (!wire.rod.quasi_static) continue;
-    table.rows.push_back({wire.name, format_significant(left_out.kinetic), format_significant(left_out.force)});
+    table.rows.push_back(
+        {wire.name, format_significant(left_out.kinetic), format_significant(left_out.force)});
   }
   if (!table.rows.empty()) page.table(table);
 }
@@ -98,14 +100,16 @@ std::vector<SceneMark> marks_of(const FinishedMotion& run) {
     marks.push_back({p.time, "phase: " + motion.phases[base::at(p.phase)].name});
   const std::vector<std::string> contacts = motion.contact_names();
   for (std::size_t k = 0; k < contacts.size(); ++k) {
-    if (const auto first = touches_of(run.result, k).first) marks.push_back({*first, "first touch: " + contacts[k]});
+    if (const auto first = touches_of(run.result, k).first)
+      marks.push_back({*first, "first touch: " + contacts[k]});
   }
   const std::vector<coupling::WireFacts> wires = motion.wire_facts();
   for (std::size_t k = 0; k < std::min(wires.size(), run.result.wires.size()); ++k) {
     if (std::isfinite(run.result.wires[k].tight_at))
       marks.push_back({run.result.wires[k].tight_at, "tight: " + wires[k].name});
   }
-  std::stable_sort(marks.begin(), marks.end(), [](const SceneMark& a, const SceneMark& b) { return a.time < b.time; });
+  std::stable_sort(marks.begin(), marks.end(),
+                   [](const SceneMark& a, const SceneMark& b) { return a.time < b.time; });
   return marks;
 }
 
@@ -135,8 +139,8 @@ void add_list_plots(const FinishedMotion& run, ReportPage& page) {
     const double strength = wires[k].strength.breaking_tension;
     if (!std::isfinite(strength) || (k > 0 && strength == wires[k - 1].strength.breaking_tension)) continue;
     const Values ends{run.samples.front().time, run.samples.back().time};
-    tensions.curves.push_back(
-        make_curve("strength", ends, {strength, strength}, CurveStyle::dashes, static_cast<int>(wires.size())));
+    tensions.curves.push_back(make_curve("strength", ends, {strength, strength}, CurveStyle::dashes,
+                                         static_cast<int>(wires.size())));
   }
   if (!wires.empty()) page.line_plot(tensions);
   if (motion.bodies.empty()) return;
@@ -162,8 +166,8 @@ void add_joint_plots(const FinishedMotion& run, ReportPage& page) {
       joints.curves.push_back(time_curve(name, colour, run.samples, [&arm, a, j](const MotionSample& s) {
         return multibody::deflection(arm, s.arms[a].state, j) / degree;
       }));
-      torques.curves.push_back(
-          time_curve(name, colour++, run.samples, [a, j](const MotionSample& s) { return s.arms[a].joint_torque[j]; }));
+      torques.curves.push_back(time_curve(
+          name, colour++, run.samples, [a, j](const MotionSample& s) { return s.arms[a].joint_torque[j]; }));
     }
   }
   if (joints.curves.empty()) return;
@@ -176,16 +180,17 @@ void add_swings(const std::vector<scenario::Swing>& swings, ReportPage& page) {
   Table table{"Swings of the joint, from zero to zero of its deflection",
               {"Begin [s]"_number, "Peak [deg]"_number, "Frequency [Hz]"_number}};
   for (const scenario::Swing& s : swings) {
-    table.rows.push_back(
-        {format_significant(s.begin, 4), format_significant(s.peak / degree), format_significant(s.frequency(), 4)});
+    table.rows.push_back({format_significant(s.begin, 4), format_significant(s.peak / degree),
+                          format_significant(s.frequency(), 4)});
   }
   page.table(table);
 }
 
 }  // namespace
 
-std::string motion_page(const scenario::Scenario& asked, const FinishedMotion& run, const std::string& version,
-                        const std::vector<std::string>& warnings, bool interrupted) {
+std::string motion_page(const scenario::Scenario& asked, const FinishedMotion& run,
+                        const std::string& version, const std::vector<std::string>& warnings,
+                        bool interrupted) {
   ReportPage page(asked.title, asked.source);
   page.doubts(warnings, interrupted);
   page.heading("Summary");

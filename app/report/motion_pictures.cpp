@@ -122,7 +122,8 @@ void difference(std::vector<ParaviewFrame>& frames) {
       line.velocities = Eigen::Matrix3Xd::Zero(3, line.points.cols());
       if (i >= before.lines.size() || i >= after.lines.size() || !(time > 0.0)) continue;
       const Eigen::Matrix3Xd &first = before.lines[i].points, &last = after.lines[i].points;
-      if (first.cols() == last.cols() && last.cols() == line.points.cols()) line.velocities = (last - first) / time;
+      if (first.cols() == last.cols() && last.cols() == line.points.cols())
+        line.velocities = (last - first) / time;
     }
   }
 }
@@ -160,14 +161,17 @@ class MotionPictures::Moment {
       case MotionCarrier::Kind::body:
         return scenario::pose_of(bodies_[at(carrier.index)]);
       case MotionCarrier::Kind::arm:
-        return multibody::frame_pose(*trees_[at(carrier.index)], kinematics_[at(carrier.index)], carrier.frame);
+        return multibody::frame_pose(*trees_[at(carrier.index)], kinematics_[at(carrier.index)],
+                                     carrier.frame);
       case MotionCarrier::Kind::world:
         break;
     }
     return {};
   }
 
-  [[nodiscard]] std::vector<Eigen::Matrix3Xd> arm(std::size_t a) const { return skeleton(*trees_[a], kinematics_[a]); }
+  [[nodiscard]] std::vector<Eigen::Matrix3Xd> arm(std::size_t a) const {
+    return skeleton(*trees_[a], kinematics_[a]);
+  }
 
  private:
   const std::vector<multibody::RigidBodyState>& bodies_;
@@ -192,7 +196,8 @@ SceneSpecification MotionPictures::scene(std::vector<SceneMark> marks) const {
   SceneSpecification scene;
   scene.title = "The motion";
   scene.marks = std::move(marks);
-  for (const coupling::WireFacts& w : motion_.wire_facts()) scene.moving.push_back({w.name, SceneItem::Kind::wire});
+  for (const coupling::WireFacts& w : motion_.wire_facts())
+    scene.moving.push_back({w.name, SceneItem::Kind::wire});
   for (const coupling::MotionArm& a : motion_.arms) scene.moving.push_back({a.name, SceneItem::Kind::arm});
   for (const Carried& c : carried_) {
     SceneItem item{c.name, SceneItem::Kind::solid};
@@ -224,7 +229,8 @@ std::vector<ParaviewLine> MotionPictures::wire_lines(const MotionSample& s) cons
   const std::size_t rods = s.wires.size() - s.law_tensions.size();
   std::vector<ParaviewLine> lines;
   for (std::size_t w = 0; w < s.wires.size(); ++w) {
-    ParaviewLine line{ParaviewLine::Kind::wire, static_cast<int>(w), facts[w].name, s.wires[w], {}, {}, {}, {}};
+    ParaviewLine line{
+        ParaviewLine::Kind::wire, static_cast<int>(w), facts[w].name, s.wires[w], {}, {}, {}, {}};
     line.contact_forces = Eigen::Matrix3Xd::Zero(3, line.points.cols());
     if (w < s.wire_loads.size()) {
       line.velocities = s.wire_loads[w].velocities;
@@ -270,7 +276,8 @@ std::vector<ParaviewFrame> MotionPictures::paraview() const {
       const Carried& c = carried_[k];
       const Pose X = moment.pose(c.carrier);
       for (const Eigen::Matrix3Xd& line : c.lines) {
-        lines.push_back({ParaviewLine::Kind::body, static_cast<int>(k), c.name, placed(X, line), {}, {}, {}, {}});
+        lines.push_back(
+            {ParaviewLine::Kind::body, static_cast<int>(k), c.name, placed(X, line), {}, {}, {}, {}});
         if (c.carrier.kind == MotionCarrier::Kind::body)
           lines.back().velocities = velocities_of(s.bodies[at(c.carrier.index)], lines.back().points);
         if (c.carrier.kind == MotionCarrier::Kind::world)
@@ -279,8 +286,14 @@ std::vector<ParaviewFrame> MotionPictures::paraview() const {
     }
     for (std::size_t a = 0; a < s.arms.size(); ++a) {
       for (Eigen::Matrix3Xd& line : moment.arm(a))
-        lines.push_back(
-            {ParaviewLine::Kind::arm, static_cast<int>(a), motion_.arms[a].name, std::move(line), {}, {}, {}, {}});
+        lines.push_back({ParaviewLine::Kind::arm,
+                         static_cast<int>(a),
+                         motion_.arms[a].name,
+                         std::move(line),
+                         {},
+                         {},
+                         {},
+                         {}});
     }
   }
   difference(frames);

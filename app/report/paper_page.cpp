@@ -36,7 +36,8 @@ void look_at_published(PlotSpecification& plot, const std::vector<Curve>& publis
   if (published.empty()) return;
   constexpr double dwarfs = 2.0;
   const Range all = extent(plot.curves), rest = extent(published);
-  if (size_of(all) > dwarfs * size_of(rest)) close_up(plot, rest, {0.15, 0.3}, "Close-up; others go beyond it.");
+  if (size_of(all) > dwarfs * size_of(rest))
+    close_up(plot, rest, {0.15, 0.3}, "Close-up; others go beyond it.");
 }
 
 void add_panels(ReportPage& page, const Figure& figure, const FigureResult& result) {
@@ -75,12 +76,13 @@ void add_comparison(ReportPage& page, const Figure& figure, const FigureResult& 
     page.paragraph(fmt::format("snare validate compares this in its group \"{}\".", figure.compared_in));
   if (result.rows.empty()) return;
   Table table{"Compared with the text",
-              {"Quantity"_text, "Unit"_text, "Reference"_number, "Computed"_number, "Error"_number, "Limit"_number,
-               "Verdict"_text, "Source"_text}};
+              {"Quantity"_text, "Unit"_text, "Reference"_number, "Computed"_number, "Error"_number,
+               "Limit"_number, "Verdict"_text, "Source"_text}};
   for (const validation::Row& row : result.rows) {
     const std::string prefix = std::string(figure.number) + ": ";
     table.rows.push_back({row.name.starts_with(prefix) ? row.name.substr(prefix.size()) : row.name, row.unit,
-                          shown(row.reference), shown(row.value), shown(row.error(), 2), shown(row.limit.value(), 2),
+                          shown(row.reference), shown(row.value), shown(row.error(), 2),
+                          shown(row.limit.value(), 2),
                           row.within() ? Cell{"within", Tone::good} : Cell{"OUT", Tone::bad}, row.source});
   }
   page.table(table);
@@ -94,7 +96,8 @@ void add_figure(ReportPage& page, const Figure& figure, const FigureResult& resu
   add_panels(page, figure, result);
   if (result.scene != nullptr) {
     const papers::Run& run = *result.scene;
-    page.scene(MotionPictures(run.asked.motions.runs.front().motion, run.samples, run.asked.motions.drawn).scene({}));
+    page.scene(MotionPictures(run.asked.motions.runs.front().motion, run.samples, run.asked.motions.drawn)
+                   .scene({}));
   }
   add_table(page, result.table);
   page.list(result.findings);
@@ -103,7 +106,8 @@ void add_figure(ReportPage& page, const Figure& figure, const FigureResult& resu
 
 }  // namespace
 
-std::string paper_page(const Paper& paper, const std::vector<FigureResult>& results, const std::string& version) {
+std::string paper_page(const Paper& paper, const std::vector<FigureResult>& results,
+                       const std::string& version) {
   ReportPage page(fmt::format("Figures and tables of {}", paper.short_title), paper.title);
   page.doubts({}, results.size() < paper.figures.size());
   for (std::size_t k = 0; k < results.size(); ++k) add_figure(page, paper.figures[k], results[k]);

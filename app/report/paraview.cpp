@@ -18,8 +18,9 @@ std::string as_bytes(std::string_view text) {
 }
 
 std::string array(const char* type, const char* name, int components, const std::string& values) {
-  return fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">{}</DataArray>\n",
-                     type, name, components, values);
+  return fmt::format(
+      "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">{}</DataArray>\n", type,
+      name, components, values);
 }
 
 std::string vector(const Eigen::Matrix3Xd& of, Eigen::Index i) {
@@ -60,14 +61,17 @@ std::string polydata(const ParaviewFrame& frame) {
       "<?xml version=\"1.0\"?>\n<!-- SI units: coordinates in metres -->\n"
       "<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n<FieldData>\n";
   text += fmt::format(
-      "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{:.9g}</DataArray>\n",
+      "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
+      "format=\"ascii\">{:.9g}</DataArray>\n",
       frame.time);
   text += fmt::format(
-      "<DataArray type=\"String\" Name=\"coordinates_unit\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n",
+      "<DataArray type=\"String\" Name=\"coordinates_unit\" NumberOfTuples=\"1\" "
+      "format=\"ascii\">{}</DataArray>\n",
       as_bytes("m"));
   text += fmt::format(
       "</FieldData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" "
-      "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData Scalars=\"tension_N\" Vectors=\"velocity_m_s\">\n",
+      "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData Scalars=\"tension_N\" "
+      "Vectors=\"velocity_m_s\">\n",
       c.count, frame.lines.size());
   text += array("Float64", "tension_N", 1, c.tension) + array("Float64", "curvature_1_m", 1, c.curvature) +
           array("Float64", "contact_force_N", 3, c.contact) + array("Float64", "velocity_m_s", 3, c.velocity);

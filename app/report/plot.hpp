@@ -16,7 +16,7 @@ enum class AxesScale {
 
 enum class Palette {
   categorical,  ///< unrelated curves: black, blue, vermillion, ... (Okabe and Ito 2008, safe for colour-blind readers)
-  sequential    ///< a family in order, e.g. shapes along a push: dark to light, from lowest to highest colour index
+  sequential  ///< a family in order, e.g. shapes along a push: dark to light, from lowest to highest colour index
 };
 
 /// First colours of the categorical palette.
@@ -35,7 +35,8 @@ struct Band {
 
 /// One curve of a plot. x need not be sorted: load and unload, closed outlines.
 struct Curve {
-  std::string name;  ///< in the legend; empty: belongs to the named curve before it (its pusher, its other half)
+  std::string
+      name;  ///< in the legend; empty: belongs to the named curve before it (its pusher, its other half)
   std::vector<double> x;
   std::vector<double> y;  ///< as long as x
   CurveStyle style = CurveStyle::line;
@@ -99,14 +100,17 @@ struct SceneItem {
   enum class Kind { wire, arm, solid };
   std::string name;
   Kind kind = Kind::solid;
-  std::vector<std::vector<double>> lines = {};  ///< of one that is carried, in its own frame: x0, y0, z0, x1, ... [mm]
+  std::vector<std::vector<double>> lines =
+      {};  ///< of one that is carried, in its own frame: x0, y0, z0, x1, ... [mm]
 };
 
 struct SceneFrame {
-  double time = 0.0;                                          ///< [s]
-  std::string label;                                          ///< "t = 0.120 s"
-  std::vector<std::vector<std::vector<double>>> moving = {};  ///< of each item that changes its shape its lines [mm]
-  std::vector<std::vector<double>> poses = {};  ///< of each that is carried: place [mm], quaternion x, y, z, w
+  double time = 0.0;  ///< [s]
+  std::string label;  ///< "t = 0.120 s"
+  std::vector<std::vector<std::vector<double>>> moving =
+      {};  ///< of each item that changes its shape its lines [mm]
+  std::vector<std::vector<double>> poses =
+      {};  ///< of each that is carried: place [mm], quaternion x, y, z, w
 };
 
 /// A motion in three dimensions, which the reader turns, magnifies and plays.

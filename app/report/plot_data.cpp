@@ -53,7 +53,8 @@ std::vector<std::size_t> thinned_indices(const std::vector<double>& values, std:
     const auto [low, high] = std::minmax_element(first, last);
     const auto ordered = std::minmax(low, high);
     indices.push_back(static_cast<std::size_t>(ordered.first - values.begin()));
-    if (ordered.first != ordered.second) indices.push_back(static_cast<std::size_t>(ordered.second - values.begin()));
+    if (ordered.first != ordered.second)
+      indices.push_back(static_cast<std::size_t>(ordered.second - values.begin()));
   }
   return indices;
 }
@@ -62,7 +63,8 @@ constexpr const char* style_names[] = {"line", "dashes", "points"};  // of Curve
 
 json curve_data(const Curve& curve, const std::string& plot_title) {
   const std::string what = fmt::format("plot '{}', curve '{}': ", plot_title, curve.name);
-  if (curve.colour < 0) throw std::invalid_argument(fmt::format("{}colour = {}, must be >= 0", what, curve.colour));
+  if (curve.colour < 0)
+    throw std::invalid_argument(fmt::format("{}colour = {}, must be >= 0", what, curve.colour));
   require_length(curve.y.size(), curve.x.size(), what + "y");
   const auto picked = thinned_indices(curve.y, max_points_per_curve);
   json data = {{"name", curve.name},
@@ -93,7 +95,8 @@ json plot_data(const PlotSpecification& plot) {
     const auto [lower, upper] = *plot.y_window;
     data["window"] = plotted_values({lower, upper}, {0, 1}, fmt::format("plot '{}': y_window", plot.title));
     if (lower >= upper) {
-      throw std::invalid_argument(fmt::format("plot '{}': y_window [{}, {}] is empty", plot.title, lower, upper));
+      throw std::invalid_argument(
+          fmt::format("plot '{}': y_window [{}, {}] is empty", plot.title, lower, upper));
     }
   }
   return data;
@@ -115,7 +118,7 @@ json scene_numbers(const std::vector<double>& values, double steps, const std::s
 }  // namespace
 
 json scene_data(const SceneSpecification& scene) {
-  constexpr double per_mm = 100.0, per_one = 1e6;                   // of lengths; of poses, for their quaternions
+  constexpr double per_mm = 100.0, per_one = 1e6;  // of lengths; of poses, for their quaternions
   static constexpr const char* kinds[] = {"wire", "arm", "solid"};  // of SceneItem::Kind
   const auto lines_of = [&](const std::vector<std::vector<double>>& lines) {
     json all = json::array();
@@ -125,15 +128,17 @@ json scene_data(const SceneSpecification& scene) {
   const auto items_of = [&](const std::vector<SceneItem>& items) {
     json all = json::array();
     for (const SceneItem& item : items)
-      all.push_back(
-          {{"name", item.name}, {"kind", kinds[static_cast<std::size_t>(item.kind)]}, {"lines", lines_of(item.lines)}});
+      all.push_back({{"name", item.name},
+                     {"kind", kinds[static_cast<std::size_t>(item.kind)]},
+                     {"lines", lines_of(item.lines)}});
     return all;
   };
   json data = {{"moving", items_of(scene.moving)},
                {"carried", items_of(scene.carried)},
                {"marks", json::array()},
                {"frames", json::array()}};
-  for (const SceneMark& mark : scene.marks) data["marks"].push_back({{"time", mark.time}, {"text", mark.text}});
+  for (const SceneMark& mark : scene.marks)
+    data["marks"].push_back({{"time", mark.time}, {"text", mark.text}});
   for (const SceneFrame& frame : scene.frames) {
     require_length(frame.moving.size(), scene.moving.size(), "scene '" + scene.title + "': lines");
     require_length(frame.poses.size(), scene.carried.size(), "scene '" + scene.title + "': poses");
@@ -143,7 +148,8 @@ json scene_data(const SceneSpecification& scene) {
       require_length(pose.size(), 7, "scene '" + scene.title + "': a pose");
       poses.push_back(scene_numbers(pose, per_one, scene.title));
     }
-    data["frames"].push_back({{"time", frame.time}, {"label", frame.label}, {"moving", moving}, {"poses", poses}});
+    data["frames"].push_back(
+        {{"time", frame.time}, {"label", frame.label}, {"moving", moving}, {"poses", poses}});
   }
   return data;
 }

@@ -32,13 +32,14 @@ void series_table(ReportPage& page, const std::vector<Series>& series, const Mod
     const Prediction& p = model.predictions[k];
     const std::vector<double> readings = identification::measured_force(series[k]);
     const bool read = !readings.empty() && !p.force.empty();
-    const identification::Misfit misfit = read ? identification::misfit(readings, p.force) : identification::Misfit();
+    const identification::Misfit misfit =
+        read ? identification::misfit(readings, p.force) : identification::Misfit();
     double largest = 0.0;
     for (const double force : p.force) largest = std::max(largest, std::abs(force));
     const numerics::SolveReport& report = p.curve.curve.report;
     table.rows.push_back({series[k].name, format_number(in_mm(series[k].test.contact_position)),
-                          std::to_string(p.force.size()), measured(largest), read ? measured(misfit.rmse) : absent,
-                          read ? percent(misfit.nrmse) : absent,
+                          std::to_string(p.force.size()), measured(largest),
+                          read ? measured(misfit.rmse) : absent, read ? percent(misfit.nrmse) : absent,
                           report.usable() ? Cell("at the last point") : Cell(report.message, Tone::bad)});
   }
   page.table(table);
@@ -49,7 +50,8 @@ void series_plots(ReportPage& page, const std::vector<Series>& series, const std
   for (std::size_t k = 0; k < series.size(); ++k) {
     const Values travel = in_mm(identification::measured_displacement(series[k]));
     const Values readings = identification::measured_force(series[k]);
-    const std::string at = series[k].name + ", at " + format_number(in_mm(series[k].test.contact_position)) + " mm";
+    const std::string at =
+        series[k].name + ", at " + format_number(in_mm(series[k].test.contact_position)) + " mm";
     PlotSpecification force{at, {"travel", "mm"}, {"force", "N"}};
     if (readings.empty()) force.width = PlotWidth::full;
     if (!readings.empty()) {
@@ -60,10 +62,12 @@ void series_plots(ReportPage& page, const std::vector<Series>& series, const std
     int colour = 1;
     for (const Model& model : models)
       if (k < model.predictions.size())  // else it has none: its path did not come to an end
-        force.curves.push_back(make_curve(model.name, travel, model.predictions[k].force, model.style, colour++));
+        force.curves.push_back(
+            make_curve(model.name, travel, model.predictions[k].force, model.style, colour++));
     page.line_plot(force);
     if (readings.empty()) continue;
-    PlotSpecification remainder{"What is left: " + series[k].name, {"travel", "mm"}, {"measured less computed", "N"}};
+    PlotSpecification remainder{
+        "What is left: " + series[k].name, {"travel", "mm"}, {"measured less computed", "N"}};
     colour = 1;
     for (const Model& model : models) {
       if (k >= model.predictions.size()) continue;
@@ -111,14 +115,16 @@ std::string fit_report_html(const identification::Experiment& experiment, const 
   }
   page.table(numbers);
   if (!trace.base_tests.acceptable(trace.tolerance)) {
-    page.callout("What the fitted model leaves is more than noise. What the model lacks is asked by snare trace.",
-                 Tone::bad);
+    page.callout(
+        "What the fitted model leaves is more than noise. What the model lacks is asked by snare trace.",
+        Tone::bad);
   }
   page.heading("Series");
   const Model fitted{"fitted model", trace.final_predictions, CurveStyle::line};
   series_table(page, trace.series, fitted);
   page.heading("Curves");
-  series_plots(page, trace.series, {{"declared model", trace.declared_predictions, CurveStyle::dashes}, fitted});
+  series_plots(page, trace.series,
+               {{"declared model", trace.declared_predictions, CurveStyle::dashes}, fitted});
   page.footer(written_by(version(), "fit.json and curves.csv") + plot_help);
   return page.html();
 }

@@ -16,6 +16,7 @@ namespace snare::app {
 
 /// The page of `snare fit`: the same with the fitted numbers, the declared model beside the fitted one.
 [[nodiscard]] std::string fit_report_html(const identification::Experiment& experiment,
-                                          const identification::Trace& trace, const std::vector<std::string>& warnings);
+                                          const identification::Trace& trace,
+                                          const std::vector<std::string>& warnings);
 
 }  // namespace snare::app

@@ -26,15 +26,16 @@ std::string probability(double p) {
 
 void errors(ReportPage& page, const RecordTrace& trace) {
   Table table{"Error of the simulation",
-              {"Records"_text, "Sensor"_code, "Unit"_text, "Declared"_number, "Base fit"_number, "Final"_number,
-               "Final, of the readings"_number}};
+              {"Records"_text, "Sensor"_code, "Unit"_text, "Declared"_number, "Base fit"_number,
+               "Final"_number, "Final, of the readings"_number}};
   const auto rows = [&](const char* which, const std::vector<ChannelError>& declared,
                         const std::vector<ChannelError>& base, const std::vector<ChannelError>& last) {
     for (std::size_t k = 0; k < last.size(); ++k)
-      table.rows.push_back({std::string(which) + (last[k].fitted ? "" : ", watched"), last[k].sensor, last[k].unit,
-                            k < declared.size() ? format_significant(declared[k].rmse) : std::string(),
-                            k < base.size() ? format_significant(base[k].rmse) : std::string(),
-                            format_significant(last[k].rmse), fmt::format("{:.2f} %", 100.0 * last[k].relative)});
+      table.rows.push_back(
+          {std::string(which) + (last[k].fitted ? "" : ", watched"), last[k].sensor, last[k].unit,
+           k < declared.size() ? format_significant(declared[k].rmse) : std::string(),
+           k < base.size() ? format_significant(base[k].rmse) : std::string(),
+           format_significant(last[k].rmse), fmt::format("{:.2f} %", 100.0 * last[k].relative)});
   };
   rows("fitted", trace.declared.errors, trace.base.errors, trace.final.errors);
   rows("held out", trace.declared.heldout, trace.base.heldout, trace.final.heldout);
@@ -56,7 +57,8 @@ void profiles(ReportPage& page, const RecordTrace& trace) {
   const auto limit = [](const identification::ProfileSide& side) {
     if (side.end == identification::ProfileEnd::bound) return format_number(*side.limit) + " (its bound)";
     if (side.limit) return format_number(*side.limit);
-    return std::string(side.end == identification::ProfileEnd::open ? "no limit" : "cannot be simulated beyond");
+    return std::string(side.end == identification::ProfileEnd::open ? "no limit"
+                                                                    : "cannot be simulated beyond");
   };
   for (const identification::Profile& p : trace.profiles)
     table.rows.push_back({p.key, format_number(p.value), limit(p.lower), limit(p.upper), p.unit});
@@ -79,10 +81,11 @@ void profiles(ReportPage& page, const RecordTrace& trace) {
 void rounds(ReportPage& page, const RecordTrace& trace) {
   for (std::size_t k = 0; k < trace.rounds.size(); ++k) {
     const identification::RecordRound& round = trace.rounds[k];
-    Table table{fmt::format("Round {}: {}{}", k + 1, round.added.empty() ? "none added" : round.added + " added",
-                            round.reason.empty() ? "" : "; " + round.reason),
-                {"Effect"_code, "Score"_number, "p (Holm)"_number, "Error after refit"_number, "Value"_number,
-                 "Would be seen from"_number, "Remark"_text}};
+    Table table{
+        fmt::format("Round {}: {}{}", k + 1, round.added.empty() ? "none added" : round.added + " added",
+                    round.reason.empty() ? "" : "; " + round.reason),
+        {"Effect"_code, "Score"_number, "p (Holm)"_number, "Error after refit"_number, "Value"_number,
+         "Would be seen from"_number, "Remark"_text}};
     for (const identification::RecordCandidate& c : round.candidates)
       table.rows.push_back({trace.effects[c.score.effect].label(),
                             c.score.unobservable.empty() ? format_number(c.score.z, 3) : std::string(),
@@ -96,11 +99,13 @@ void rounds(ReportPage& page, const RecordTrace& trace) {
     page.table(table);
     for (const auto& members : round.classes)
       if (members.size() > 1)
-        page.callout(fmt::format("These records cannot tell apart: {}", fmt::join(members, ", ")), Tone::plain);
+        page.callout(fmt::format("These records cannot tell apart: {}", fmt::join(members, ", ")),
+                     Tone::plain);
   }
 }
 
-Curve curve_of(const char* name, const Eigen::VectorXd& x, const Eigen::VectorXd& y, CurveStyle style, int colour) {
+Curve curve_of(const char* name, const Eigen::VectorXd& x, const Eigen::VectorXd& y, CurveStyle style,
+               int colour) {
   return make_curve(name, Values(x.begin(), x.end()), Values(y.begin(), y.end()), style, colour);
 }
 
@@ -116,9 +121,11 @@ void records(ReportPage& page, const RecordSet& set, const RecordTrace& trace) {
         if (e.sensor == record.channels[c].sensor) unit = e.unit;
       PlotSpecification plot{record.channels[c].sensor, {"time", "s"}, {record.channels[c].sensor, unit}};
       PlotSpecification remainder{"measured less simulated", {"time", "s"}, {"difference", unit}};
-      PlotSpecification over_value{
-          "measured less simulated, over what is simulated", {record.channels[c].sensor, unit}, {"difference", unit}};
-      PlotSpecification spectrum{"measured less simulated, by frequency", {"frequency", "Hz"}, {"amplitude", unit}};
+      PlotSpecification over_value{"measured less simulated, over what is simulated",
+                                   {record.channels[c].sensor, unit},
+                                   {"difference", unit}};
+      PlotSpecification spectrum{
+          "measured less simulated, by frequency", {"frequency", "Hz"}, {"amplitude", unit}};
       plot.width = remainder.width = PlotWidth::full;
       plot.curves.push_back(curve_of("measured", record.times, measured, CurveStyle::points, 0));
       const auto add = [&](const char* name, const RecordStage& stage, CurveStyle style, int colour) {
@@ -150,26 +157,33 @@ std::string record_verdict(const RecordTrace& trace) {
   const std::string names = fmt::format("{}", fmt::join(trace.selected, ", "));
   switch (trace.kind) {
     case VerdictKind::nothing_missing:
-      return "Nothing is missing: what the declared scenario leaves is noise, or too small to be worth a name.";
+      return "Nothing is missing: what the declared scenario leaves is noise, or too small to be worth a "
+             "name.";
     case VerdictKind::explained:
       return fmt::format(
-          "Explained: the scenario lacks {}; with it what is left is noise, or too small to be worth a name.", names);
+          "Explained: the scenario lacks {}; with it what is left is noise, or too small to be worth a name.",
+          names);
     case VerdictKind::partly_explained:
       return fmt::format(
-          "Partly explained: {} carry {:.1f} % of what the base model leaves beside the noise; the rest stays open.",
+          "Partly explained: {} carry {:.1f} % of what the base model leaves beside the noise; the rest "
+          "stays open.",
           names, 100.0 * (1.0 - trace.share_left));
     case VerdictKind::cannot_tell:
-      return "Cannot tell: the scenario describes the records, but they do not determine its numbers: an effect that "
+      return "Cannot tell: the scenario describes the records, but they do not determine its numbers: an "
+             "effect that "
              "acts "
-             "like one of these would not be seen. Hold one of the numbers that go together at a value that was "
+             "like one of these would not be seen. Hold one of the numbers that go together at a value that "
+             "was "
              "measured "
              "otherwise.";
     case VerdictKind::not_explained:
       break;
   }
-  if (trace.partial.empty()) return "Not explained: no effect of the catalogue accounts for what the scenario leaves.";
+  if (trace.partial.empty())
+    return "Not explained: no effect of the catalogue accounts for what the scenario leaves.";
   return fmt::format(
-      "Not explained: {} would carry {:.1f} % of what the base model leaves beside the noise, but leave more than "
+      "Not explained: {} would carry {:.1f} % of what the base model leaves beside the noise, but leave more "
+      "than "
       "noise, so "
       "none of them is named: something else is missing.",
       fmt::join(trace.partial, ", "), 100.0 * (1.0 - trace.share_left));
@@ -191,9 +205,10 @@ std::string record_report_html(const RecordSet& set, const RecordTrace& trace) {
     std::vector<std::string> items;
     for (const identification::Leftover& l : trace.leftovers)
       if (l.share > 0.05 && items.size() < 5)
-        items.push_back(fmt::format(
-            "{:.0f} % of the residual of {} is a function of {} (found on one half of the time, tried on the other)",
-            100.0 * l.share, l.sensor, l.on));
+        items.push_back(
+            fmt::format("{:.0f} % of the residual of {} is a function of {} (found on one half of the time, "
+                        "tried on the other)",
+                        100.0 * l.share, l.sensor, l.on));
     page.list(items);
   }
   if (!trace.next_measurement.empty()) {

@@ -24,7 +24,8 @@ double rounded(double value, int digits) {
 }
 
 void require_finite(double value) {
-  if (!std::isfinite(value)) throw std::invalid_argument(fmt::format("a report cannot print the value {}", value));
+  if (!std::isfinite(value))
+    throw std::invalid_argument(fmt::format("a report cannot print the value {}", value));
 }
 
 /// JSON that cannot end the script element it stands in; bytes that are not UTF-8 become U+FFFD.
@@ -83,7 +84,8 @@ void ReportPage::callout(std::string_view text, Tone tone) {
 }
 
 void ReportPage::doubts(const std::vector<std::string>& warnings, bool interrupted) {
-  if (interrupted) callout("This run was interrupted: what is shown is a part of what was asked for.", Tone::bad);
+  if (interrupted)
+    callout("This run was interrupted: what is shown is a part of what was asked for.", Tone::bad);
   for (const std::string& warning : warnings) callout("Warning: " + warning, Tone::bad);
 }
 
@@ -94,7 +96,8 @@ void ReportPage::key_figures(const std::vector<KeyFigure>& figures) {
     body_ += fmt::format(
         "<div class=\"{}\"><div class=\"label\">{}</div><div class=\"value\">{}</div>"
         "<div class=\"remark\">{}</div></div>\n",
-        tone_class(figure.tone), escape_html(figure.label), escape_html(figure.value), escape_html(figure.remark));
+        tone_class(figure.tone), escape_html(figure.label), escape_html(figure.value),
+        escape_html(figure.remark));
   }
   body_ += "</div>\n";
 }
@@ -107,16 +110,17 @@ void ReportPage::drawing(std::string_view svg) {
 void ReportPage::table(const Table& table) {
   for (const auto& row : table.rows) {
     if (row.size() != table.columns.size()) {
-      throw std::invalid_argument(fmt::format("table '{}': a row has {} cells, the table has {} columns", table.caption,
-                                              row.size(), table.columns.size()));
+      throw std::invalid_argument(fmt::format("table '{}': a row has {} cells, the table has {} columns",
+                                              table.caption, row.size(), table.columns.size()));
     }
   }
   close_plots();
-  if (!table.caption.empty()) body_ += fmt::format("<p class=\"caption\">{}</p>\n", escape_html(table.caption));
+  if (!table.caption.empty())
+    body_ += fmt::format("<p class=\"caption\">{}</p>\n", escape_html(table.caption));
   body_ += "<div class=\"table\"><table>\n<thead><tr>";
   for (const Column& column : table.columns) {
-    body_ +=
-        fmt::format("<th scope=\"col\" class=\"{}\">{}</th>", column_class(column.kind), escape_html(column.heading));
+    body_ += fmt::format("<th scope=\"col\" class=\"{}\">{}</th>", column_class(column.kind),
+                         escape_html(column.heading));
   }
   body_ += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
@@ -149,7 +153,8 @@ void ReportPage::line_plot(const PlotSpecification& plot) {
   std::string note = plot.note;
   const auto longest = std::ranges::max(plot.curves, {}, points).x.size();
   if (longest > max_points_per_curve) {
-    note += fmt::format("{}Of {} points the extremes of every stretch are drawn.", note.empty() ? "" : " ", longest);
+    note += fmt::format("{}Of {} points the extremes of every stretch are drawn.", note.empty() ? "" : " ",
+                        longest);
   }
   if (!note.empty()) body_ += fmt::format("<p class=\"note\">{}</p>", escape_html(note));
   body_ += "<script type=\"application/json\">" + embedded_json(data) + "</script></figure>\n";
@@ -160,12 +165,15 @@ void ReportPage::scene(const SceneSpecification& scene) {
   close_plots();
   spatial_ = true;
   body_ += fmt::format(
-      "<figure class=\"scene\"><figcaption>{}</figcaption><div class=\"stage\"></div><div class=\"marks\"></div>"
+      "<figure class=\"scene\"><figcaption>{}</figcaption><div class=\"stage\"></div><div "
+      "class=\"marks\"></div>"
       "<p><button type=\"button\" class=\"play\">play</button> <input type=\"range\" min=\"0\" value=\"0\" "
       "style=\"width:60%\"> <output></output></p>"
-      "<p><button type=\"button\" class=\"near\">to the wires</button> <button type=\"button\" class=\"far\">show "
+      "<p><button type=\"button\" class=\"near\">to the wires</button> <button type=\"button\" "
+      "class=\"far\">show "
       "all</button> <label><input type=\"checkbox\" checked> follow the wires</label></p>"
-      "<p class=\"note\">Drag to turn, with the right button to shift; wheel or two fingers to come nearer. A mark on "
+      "<p class=\"note\">Drag to turn, with the right button to shift; wheel or two fingers to come nearer. "
+      "A mark on "
       "the "
       "time line leads to its moment.</p><script type=\"application/json\">{}</script></figure>\n",
       escape_html(scene.title), embedded_json(scene_data(scene)));
@@ -200,12 +208,13 @@ std::string ReportPage::html() const {
   if (plots_open_) page += "</div>\n";
   page += fmt::format("</main>\n<footer>{}</footer>\n", escape_html(footer_));
   if (plot_count_ > 0) {
-    page += fmt::format("<script>\n/*\n{}*/\n{}\n</script>\n<script>\n{}</script>\n", report_assets::d3_notice,
-                        report_assets::d3_script, report_assets::plot_script);
+    page += fmt::format("<script>\n/*\n{}*/\n{}\n</script>\n<script>\n{}</script>\n",
+                        report_assets::d3_notice, report_assets::d3_script, report_assets::plot_script);
   }
   if (spatial_) {
-    page += fmt::format("<script>\n/*\n{}*/\n{}\n{}\n</script>\n<script>\n{}</script>\n", report_assets::three_notice,
-                        report_assets::three_script, report_assets::orbit_script, report_assets::scene_script);
+    page += fmt::format("<script>\n/*\n{}*/\n{}\n{}\n</script>\n<script>\n{}</script>\n",
+                        report_assets::three_notice, report_assets::three_script, report_assets::orbit_script,
+                        report_assets::scene_script);
   }
   page += "</body>\n</html>\n";
   return page;

@@ -61,7 +61,8 @@ std::pair<std::string, std::string> name_and_unit(const std::string& key) {
   return {spaced(name), ""};
 }
 
-std::vector<Cell> value_cells(std::optional<double> value, std::optional<double> lower, std::optional<double> upper) {
+std::vector<Cell> value_cells(std::optional<double> value, std::optional<double> lower,
+                              std::optional<double> upper) {
   value = known(value);
   lower = known(lower);
   upper = known(upper);

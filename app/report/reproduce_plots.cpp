@@ -49,8 +49,8 @@ Values computed_stiffness(const Series& series, const Prediction* prediction) {
 }
 
 Curve published_curve(const Series& series, const std::string& name, int colour) {
-  Curve curve =
-      make_curve(name, displacement_mm(series), identification::measured_force(series), CurveStyle::line, colour);
+  Curve curve = make_curve(name, displacement_mm(series), identification::measured_force(series),
+                           CurveStyle::line, colour);
   if (const auto sigma = known(published_scatter(series))) {
     curve.band = band_around(curve.y, Values(curve.y.size(), *sigma));
   }
@@ -105,16 +105,17 @@ void add_force_plots(ReportPage& page, const Reproduction& result, std::size_t k
                           .y = {"force F", "N"},
                           .curves = {published_curve(series, "published", published_colour)},
                           .note = fmt::format(scatter_note, format_number(band_sigmas))};
-  PlotSpecification residual{
-      .title = "Residual: computed minus published force", .x = {"displacement d", "mm"}, .y = {"residual", "N"}};
-  PlotSpecification stiffness{
-      .title = "Tangent stiffness",
-      .x = {"displacement d", "mm"},
-      .y = {"stiffness dF/dd", "N/mm"},
-      .curves = {make_curve(published_slope, d, published_stiffness(series), CurveStyle::line, published_colour)}};
+  PlotSpecification residual{.title = "Residual: computed minus published force",
+                             .x = {"displacement d", "mm"},
+                             .y = {"residual", "N"}};
+  PlotSpecification stiffness{.title = "Tangent stiffness",
+                              .x = {"displacement d", "mm"},
+                              .y = {"stiffness dF/dd", "N/mm"},
+                              .curves = {make_curve(published_slope, d, published_stiffness(series),
+                                                    CurveStyle::line, published_colour)}};
   if (const auto sigma = known(published_scatter(series))) {
-    Curve scatter = make_curve(fmt::format("published scatter \u00b1 {} \u03c3", format_number(band_sigmas)), d,
-                               Values(published.size(), 0.0), CurveStyle::line, published_colour);
+    Curve scatter = make_curve(fmt::format("published scatter \u00b1 {} \u03c3", format_number(band_sigmas)),
+                               d, Values(published.size(), 0.0), CurveStyle::line, published_colour);
     scatter.band = band_around(scatter.y, Values(scatter.y.size(), *sigma));
     residual.curves.push_back(std::move(scatter));
   }
@@ -160,7 +161,8 @@ Curve pusher_outline(const coupling::PushShape& shape, double radius_mm, int col
   return outline;
 }
 
-void add_wire_plots(ReportPage& page, const Series& series, const Prediction& prediction, const std::string& label) {
+void add_wire_plots(ReportPage& page, const Series& series, const Prediction& prediction,
+                    const std::string& label) {
   const std::vector<coupling::PushShape>& shapes = prediction.curve.curve.shapes;
   if (shapes.empty()) return;
   PlotSpecification shape_plot{.title = fmt::format("Shapes of the wire, {}", label),
@@ -204,10 +206,11 @@ std::string series_title(const Series& series) {
 
 void add_overview(ReportPage& page, const Reproduction& result) {
   const ReproducedModel* best = result.best_model();
-  PlotSpecification force{.title = "Force at all positions",
-                          .x = {"displacement d", "mm"},
-                          .y = {"force F", "N"},
-                          .note = "Solid: published. " + fmt::format(scatter_note, format_number(band_sigmas))};
+  PlotSpecification force{
+      .title = "Force at all positions",
+      .x = {"displacement d", "mm"},
+      .y = {"force F", "N"},
+      .note = "Solid: published. " + fmt::format(scatter_note, format_number(band_sigmas))};
   PlotSpecification stiffness{.title = "Tangent stiffness at all positions",
                               .x = {"displacement d", "mm"},
                               .y = {"stiffness dF/dd", "N/mm"},
@@ -241,7 +244,8 @@ void add_series(ReportPage& page, const Reproduction& result, std::size_t k) {
   const Series& series = result.experiment.series[k];
   page.heading(series_title(series));
   const double range = 1e3 * std::ranges::max(identification::measured_displacement(series));
-  page.paragraph(published_law(series) + fmt::format(" Pushed from first touch to {} mm.", format_number(range)));
+  page.paragraph(published_law(series) +
+                 fmt::format(" Pushed from first touch to {} mm.", format_number(range)));
   for (const ReproducedModel& model : result.models) {
     const Prediction* prediction = model.at(k);
     const std::string reason = prediction ? reason_stopped(*prediction) : "";

@@ -65,14 +65,15 @@ void add_verdict(ReportPage& page, const Reproduction& result) {
   if (!best || !sigma || *sigma <= 0.0) return;
   const double ratio = best->misfit(result.experiment)->rmse / *sigma;
   if (!best->complete(result.experiment)) {
-    page.callout(
-        fmt::format("No verdict: the {} was not computed to the end of the push at every position.", best->label),
-        Tone::bad);
+    page.callout(fmt::format("No verdict: the {} was not computed to the end of the push at every position.",
+                             best->label),
+                 Tone::bad);
   } else {
     page.callout(
-        fmt::format("No verdict: the tracing is missing. The {} is {} times the published scatter away from the "
-                    "published curves.",
-                    best->label, format_significant(ratio, 2)),
+        fmt::format(
+            "No verdict: the tracing is missing. The {} is {} times the published scatter away from the "
+            "published curves.",
+            best->label, format_significant(ratio, 2)),
         Tone::plain);
   }
 }
@@ -83,15 +84,17 @@ std::string model_sentence(const Reproduction& result, const ReproducedModel& mo
   if (!description.empty() && !description.ends_with('.')) description += '.';
   const auto misfit = model.misfit(result.experiment);
   if (!misfit) return fmt::format("The {} was not computed. {}", model.label, description);
-  const std::string freedom = model.free == 0
-                                  ? " with nothing fitted"
-                                  : fmt::format(" with {} fitted number{}", model.free, model.free == 1 ? "" : "s");
+  const std::string freedom =
+      model.free == 0 ? " with nothing fitted"
+                      : fmt::format(" with {} fitted number{}", model.free, model.free == 1 ? "" : "s");
   const auto sigma = overall_sigma(result);
-  const std::string over_scatter = sigma && *sigma > 0.0 ? fmt::format(" and {} times the published scatter",
-                                                                       format_significant(misfit->rmse / *sigma, 2))
-                                                         : "";
-  return fmt::format("The {}{} differs from the published force by {} N rms over {}, {}{}. {}", model.label, freedom,
-                     measured(misfit->rmse), model.complete(result.experiment) ? "all positions" : "what was computed",
+  const std::string over_scatter =
+      sigma && *sigma > 0.0
+          ? fmt::format(" and {} times the published scatter", format_significant(misfit->rmse / *sigma, 2))
+          : "";
+  return fmt::format("The {}{} differs from the published force by {} N rms over {}, {}{}. {}", model.label,
+                     freedom, measured(misfit->rmse),
+                     model.complete(result.experiment) ? "all positions" : "what was computed",
                      share_of(misfit->nrmse, "its range"), over_scatter, description);
 }
 
@@ -107,12 +110,15 @@ void add_map(ReportPage& page, const Reproduction& result) {
   std::ranges::stable_sort(entries, std::greater(),
                            [](const nlohmann::json& e) { return e["probability"][0].get<double>(); });
   Table table{
-      "Probability among all that were weighed, ranges of the fits even in their logarithm and even in themselves. "
+      "Probability among all that were weighed, ranges of the fits even in their logarithm and even in "
+      "themselves. "
       "Range, readings and "
-      "numbers: the likeliest. p: that such a test gives published fits as far from it, ranges and readings fitted "
+      "numbers: the likeliest. p: that such a test gives published fits as far from it, ranges and readings "
+      "fitted "
       "too.",
-      {"What differs from the declared test"_text, "Probability"_number, "ranges even"_number, "Range [mm]"_number,
-       "Readings"_number, "p"_number, "More compliance along the wire [\u00b5m/N]"_number}};
+      {"What differs from the declared test"_text, "Probability"_number, "ranges even"_number,
+       "Range [mm]"_number, "Readings"_number, "p"_number,
+       "More compliance along the wire [\u00b5m/N]"_number}};
   constexpr std::size_t shown_rows = 12;
   for (const nlohmann::json& e : entries) {
     if (table.rows.size() == shown_rows) break;
@@ -120,7 +126,8 @@ void add_map(ReportPage& page, const Reproduction& result) {
       return format_significant(e["probability"][prior].get<double>(), 2);
     };
     table.rows.push_back({e["meaning"].get<std::string>(), probability(0), probability(1),
-                          format_significant(e["range_mm"].get<double>(), 3), std::to_string(e["readings"].get<int>()),
+                          format_significant(e["range_mm"].get<double>(), 3),
+                          std::to_string(e["readings"].get<int>()),
                           e["p"].is_null() ? absent : format_significant(e["p"].get<double>(), 2),
                           format_significant(e["more_compliance_um_N"].get<double>(), 2)});
   }
@@ -132,7 +139,8 @@ void add_summary(ReportPage& page, const Reproduction& result) {
   std::vector<KeyFigure> figures;
   for (const ReproducedModel& model : result.models) {
     const auto misfit = model.misfit(result.experiment);
-    figures.push_back({"Error of the " + model.label, misfit ? measured(misfit->rmse, " N rms") : "not computed",
+    figures.push_back({"Error of the " + model.label,
+                       misfit ? measured(misfit->rmse, " N rms") : "not computed",
                        misfit ? share_of(misfit->nrmse, "the range of the published force") : ""});
   }
   if (const auto sigma = overall_sigma(result)) {

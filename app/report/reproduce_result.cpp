@@ -52,7 +52,8 @@ std::optional<double> published_scatter(const Series& series) {
   return series.law ? series.law->scatter() : series.force_sigma;
 }
 
-std::vector<double> tangent_stiffness(const std::vector<double>& displacement, const std::vector<double>& force) {
+std::vector<double> tangent_stiffness(const std::vector<double>& displacement,
+                                      const std::vector<double>& force) {
   const std::size_t n = std::min(displacement.size(), force.size());
   std::vector<double> result;
   for (std::size_t i = 0; i < n && n > 1; ++i) {

@@ -22,17 +22,19 @@ struct ReproducedNumber {
 
 /// A model of the wire beside the published curves.
 struct ReproducedModel {
-  std::string name;                                          ///< "declared", "best_fit" or "traced"
-  std::string label;                                         ///< in words, lower case
-  std::string description;                                   ///< one sentence
-  std::map<std::string, ReproducedNumber> numbers = {};      ///< by key of the experiment file
-  int free = 0;                                              ///< how many of them were fitted
-  std::vector<identification::Prediction> predictions = {};  ///< one a series; fewer when it was not computed at all
+  std::string name;                                      ///< "declared", "best_fit" or "traced"
+  std::string label;                                     ///< in words, lower case
+  std::string description;                               ///< one sentence
+  std::map<std::string, ReproducedNumber> numbers = {};  ///< by key of the experiment file
+  int free = 0;                                          ///< how many of them were fitted
+  std::vector<identification::Prediction> predictions =
+      {};  ///< one a series; fewer when it was not computed at all
 
   /// Null where the model was not computed.
   [[nodiscard]] const identification::Prediction* at(std::size_t series) const;
   /// Over all readings of the experiment that were reached; none without any prediction.
-  [[nodiscard]] std::optional<identification::Misfit> misfit(const identification::Experiment& experiment) const;
+  [[nodiscard]] std::optional<identification::Misfit> misfit(
+      const identification::Experiment& experiment) const;
   /// Computed at every position to the end of the push.
   [[nodiscard]] bool complete(const identification::Experiment& experiment) const;
 };
@@ -50,10 +52,11 @@ struct Reproduction {
   std::vector<std::string> assumptions;
   std::vector<ReproducedModel> models;  ///< in the order in which they are shown, the declared one first
   std::optional<identification::Trace> trace;
-  std::optional<identification::SummaryStatistics> summary;    ///< of the best fit; none without published fits
-  std::map<int, identification::SummaryStatistics> by_digits;  ///< the same with R2 printed to so many decimals
+  std::optional<identification::SummaryStatistics> summary;  ///< of the best fit; none without published fits
+  std::map<int, identification::SummaryStatistics>
+      by_digits;  ///< the same with R2 printed to so many decimals
   std::shared_ptr<const nlohmann::json>
-      map;                               ///< of how the fits may have come about, results/published_map.hpp; or null
+      map;  ///< of how the fits may have come about, results/published_map.hpp; or null
   std::optional<RefittedLeader> leader;  ///< of the map
   std::vector<std::string> warnings;     ///< doubts about the models
   bool interrupted = false;              ///< only a part of the result was computed

@@ -28,9 +28,10 @@ std::string ring_down_report_html(const RingDownFile& file, const std::vector<Ri
   page.callout(split.statement, !split.consistent() ? Tone::bad : split.separated ? Tone::good : Tone::plain);
   for (const std::string& warning : warnings) page.callout(warning, Tone::bad);
   const std::string kind = split.consistent() ? "95 %" : "95 %, with the scatter between the decays";
-  page.key_figures(
-      {{"bending_time", with_error(split.bending_time) + " s", split.separated ? kind : "if all were material"},
-       {"mass_rate", with_error(split.mass_rate) + " 1/s", split.separated ? kind : "if all were mass-proportional"}});
+  page.key_figures({{"bending_time", with_error(split.bending_time) + " s",
+                     split.separated ? kind : "if all were material"},
+                    {"mass_rate", with_error(split.mass_rate) + " 1/s",
+                     split.separated ? kind : "if all were mass-proportional"}});
   Table table{"",
               {"Series"_code, "Frequency [Hz]"_number, "Damping ratio"_number, "Decay [1/s]"_number,
                "Amplitude [mm]"_number, "Friction [mm/s]"_number}};
@@ -38,8 +39,9 @@ std::string ring_down_report_html(const RingDownFile& file, const std::vector<Ri
     for (std::size_t m = 0; m < fits[s].modes.size(); ++m) {
       const RingDownMode& mode = fits[s].modes[m];
       const bool rubs = fits[s].friction && m == fits[s].largest;
-      table.rows.push_back({file.series[s].data.name, with_error(mode.frequency), with_error(mode.damping_ratio),
-                            with_error(mode.decay), with_error(mode.amplitude, per_mm),
+      table.rows.push_back({file.series[s].data.name, with_error(mode.frequency),
+                            with_error(mode.damping_ratio), with_error(mode.decay),
+                            with_error(mode.amplitude, per_mm),
                             rubs ? with_error(*fits[s].friction, per_mm) : std::string("none seen")});
     }
   }

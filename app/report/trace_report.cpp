@@ -56,8 +56,9 @@ Values forces(const std::vector<Prediction>& model, std::size_t k) {
 std::string noise_source(const Trace& trace) {
   const identification::Noise& noise = trace.noise;
   if (noise.source == "replicates" && noise.smooth > 0.0) {
-    return fmt::format("from the spread of repeated series; {} of its variance is smooth, over {} mm of travel",
-                       percent(noise.smooth), shown(1e3 * noise.length, 2));
+    return fmt::format(
+        "from the spread of repeated series; {} of its variance is smooth, over {} mm of travel",
+        percent(noise.smooth), shown(1e3 * noise.length, 2));
   }
   if (trace.from_laws) return "the scatter that the published R\u00b2 implies";
   if (noise.source == "declared") return "as declared in the experiment file";
@@ -68,7 +69,8 @@ std::string noise_source(const Trace& trace) {
   return noise.source;
 }
 
-KeyFigure error_figure(const Trace& trace, const ModelError& error, const std::string& label, std::string remark) {
+KeyFigure error_figure(const Trace& trace, const ModelError& error, const std::string& label,
+                       std::string remark) {
   const auto rmse = known(error.rmse);
   const auto nrmse = known(error.nrmse);
   const auto sigma = known(reading_noise(trace));
@@ -100,8 +102,8 @@ std::string effects_found(const Trace& trace) {
 KeyFigure effect_figure(const Trace& trace) {
   const char* label = "Effect found";
   if (trace.kind == identification::VerdictKind::partly_explained) {
-    return {label, effects_found(trace), "in part; at most " + measured(trace.remaining.upper, " N rms") + " is left",
-            Tone::plain};
+    return {label, effects_found(trace),
+            "in part; at most " + measured(trace.remaining.upper, " N rms") + " is left", Tone::plain};
   }
   if (trace.kind == identification::VerdictKind::cannot_tell)
     return {label, "cannot tell", "the readings do not determine the numbers of the base model", Tone::plain};
@@ -113,7 +115,8 @@ KeyFigure effect_figure(const Trace& trace) {
   if (unchanged(trace)) {
     const bool noise = trace.base_tests.within_noise();
     return {label, "none missing",
-            noise ? "what the base model leaves looks like noise" : "what the base model leaves is not worth a name",
+            noise ? "what the base model leaves looks like noise"
+                  : "what the base model leaves is not worth a name",
             Tone::good};
   }
   if (!trace.decided) {
@@ -143,7 +146,8 @@ std::optional<KeyFigure> prediction_figure(const Trace& trace) {
 /// Good: an engineer may rely on it; bad: not; plain: within what is said.
 Tone tone_of(const Trace& trace) {
   using identification::VerdictKind;
-  if (trace.kind == VerdictKind::partly_explained || trace.kind == VerdictKind::cannot_tell) return Tone::plain;
+  if (trace.kind == VerdictKind::partly_explained || trace.kind == VerdictKind::cannot_tell)
+    return Tone::plain;
   return trace.explained ? Tone::good : Tone::bad;
 }
 
@@ -151,25 +155,29 @@ void add_summary(ReportPage& page, const Trace& trace) {
   page.heading("Summary");
   page.callout(verdict(trace), tone_of(trace));
   if (trace.interrupted) {
-    page.callout("Interrupted: the page shows what was known by then; a complete run may find more.", Tone::bad);
+    page.callout("Interrupted: the page shows what was known by then; a complete run may find more.",
+                 Tone::bad);
   }
   const std::size_t fitted = trace.base.numbers.size();
-  page.key_figures(
-      {error_figure(trace, trace.declared, "Error as declared", "nothing fitted"),
-       error_figure(trace, trace.base, "Error of the base model",
-                    fmt::format("{} number{} fitted", fitted, fitted == 1 ? "" : "s")),
-       error_figure(trace, trace.final, "Error of the final model",
-                    unchanged(trace) ? "the base model, nothing added" : "with " + spaced(joined(trace.selected)))});
+  page.key_figures({error_figure(trace, trace.declared, "Error as declared", "nothing fitted"),
+                    error_figure(trace, trace.base, "Error of the base model",
+                                 fmt::format("{} number{} fitted", fitted, fitted == 1 ? "" : "s")),
+                    error_figure(trace, trace.final, "Error of the final model",
+                                 unchanged(trace) ? "the base model, nothing added"
+                                                  : "with " + spaced(joined(trace.selected)))});
   std::vector<KeyFigure> others;
   if (const auto sigma = known(reading_noise(trace))) {
-    others.push_back({"Noise of a reading (\u03c3)", measured(sigma, " N"), noise_source(trace), Tone::plain});
+    others.push_back(
+        {"Noise of a reading (\u03c3)", measured(sigma, " N"), noise_source(trace), Tone::plain});
   }
   others.push_back(effect_figure(trace));
   if (const auto prediction = prediction_figure(trace)) others.push_back(*prediction);
   page.key_figures(others);
   page.paragraph(
-      "The declared model is the wire as its file describes it. The base model is the same with its uncertain numbers "
-      "fitted. The final model has in addition the effects, if any, that the readings ask for. Errors are root mean "
+      "The declared model is the wire as its file describes it. The base model is the same with its "
+      "uncertain numbers "
+      "fitted. The final model has in addition the effects, if any, that the readings ask for. Errors are "
+      "root mean "
       "squares over the fitted readings.");
 }
 
@@ -185,15 +193,16 @@ PlotSpecification series_plot(const Trace& trace, std::size_t k) {
     if (!curve.x.empty()) plot.curves.push_back(std::move(curve));
   };
   add("measured", series.readings->force, CurveStyle::points, black);
-  add(unchanged(trace) ? "base model, also final" : "base model", forces(trace.base_predictions, k), CurveStyle::line,
-      blue);
+  add(unchanged(trace) ? "base model, also final" : "base model", forces(trace.base_predictions, k),
+      CurveStyle::line, blue);
   if (!unchanged(trace)) add("final model", forces(trace.final_predictions, k), CurveStyle::line, vermillion);
   const Range reference = extent(plot.curves);
   add("declared model", forces(trace.declared_predictions, k), CurveStyle::dashes, green);
   const Range all = extent(plot.curves);
   if (size_of(reference) > 0.0 && size_of(all) > dwarfing_ratio * size_of(reference)) {
     const double far = all.upper > reference.upper ? all.upper : all.lower;
-    close_up(plot, reference, {0.1, 0.1}, fmt::format("Close-up; the declared model reaches {} N.", measured(far)));
+    close_up(plot, reference, {0.1, 0.1},
+             fmt::format("Close-up; the declared model reaches {} N.", measured(far)));
   }
   return plot;
 }
@@ -201,8 +210,8 @@ PlotSpecification series_plot(const Trace& trace, std::size_t k) {
 /// Distances of the models from the published laws, for series whose readings were drawn about one.
 void add_laws(ReportPage& page, const Trace& trace) {
   Table table{"Distance of the models from the published fits themselves [N rms]; green: within the scatter.",
-              {"Series"_text, "R\u00b2"_number, "Scatter [N]"_number, "Declared model"_number, "Base model"_number,
-               "Final model"_number}};
+              {"Series"_text, "R\u00b2"_number, "Scatter [N]"_number, "Declared model"_number,
+               "Base model"_number, "Final model"_number}};
   Words drawn;
   for (std::size_t k = 0; k < trace.series.size(); ++k) {
     const Series& series = trace.series[k];
@@ -210,7 +219,8 @@ void add_laws(ReportPage& page, const Trace& trace) {
     drawn.push_back(series.name);
     const double scatter = series.law->scatter();
     std::vector<Cell> row{series.name, shown(series.law->r_squared), measured(scatter)};
-    for (const auto* model : {&trace.declared_predictions, &trace.base_predictions, &trace.final_predictions.get()}) {
+    for (const auto* model :
+         {&trace.declared_predictions, &trace.base_predictions, &trace.final_predictions.get()}) {
       const auto rms = known(law_distance(trace, k, *model));
       row.emplace_back(measured(rms), rms && *rms <= scatter ? Tone::good : Tone::plain);
     }
@@ -219,7 +229,8 @@ void add_laws(ReportPage& page, const Trace& trace) {
   if (drawn.empty()) return;
   page.paragraph(fmt::format(
       "The points of {} are no readings. Only a fit F = A d\u00b2 + B d + C to readings was published, and "
-      "only its three coefficients and R\u00b2 count: a curve may leave the parabola as the lost readings did.",
+      "only its three coefficients and R\u00b2 count: a curve may leave the parabola as the lost readings "
+      "did.",
       joined(drawn)));
   page.table(table);
 }
@@ -231,9 +242,10 @@ void add_before_and_after(ReportPage& page, const Trace& trace) {
   for (std::size_t k = 0; k < trace.series.size(); ++k) {
     if (trace.heldout[k]) heldout.push_back(trace.series[k].name);
   }
-  page.paragraph(heldout.empty() ? "Every series took part in the fit; none was held out."
-                                 : fmt::format("Held out, never shown to a fit: {}. There the curves are predictions.",
-                                               joined(heldout)));
+  page.paragraph(heldout.empty()
+                     ? "Every series took part in the fit; none was held out."
+                     : fmt::format("Held out, never shown to a fit: {}. There the curves are predictions.",
+                                   joined(heldout)));
   for (std::size_t k = 0; k < trace.series.size(); ++k) page.line_plot(series_plot(trace, k));
   add_laws(page, trace);
 }
@@ -244,11 +256,12 @@ enum class Abscissa { travel, model_force, time };
 
 const Axis axes[] = {{"travel", "mm"}, {"force of the model", "N"}, {"time", "s"}};  // of Abscissa
 
-PlotSpecification residual_plot(const Trace& trace, const std::string& name, const std::vector<Prediction>& model,
-                                Abscissa abscissa) {
+PlotSpecification residual_plot(const Trace& trace, const std::string& name,
+                                const std::vector<Prediction>& model, Abscissa abscissa) {
   const Axis& axis = axes[static_cast<std::size_t>(abscissa)];
-  PlotSpecification plot{
-      .title = fmt::format("Measured minus {} model, against {}", name, axis.label), .x = axis, .y = {"residual", "N"}};
+  PlotSpecification plot{.title = fmt::format("Measured minus {} model, against {}", name, axis.label),
+                         .x = axis,
+                         .y = {"residual", "N"}};
   Values all;
   for (std::size_t k = 0; k < trace.series.size(); ++k) {
     const Series& series = trace.series[k];
@@ -268,8 +281,9 @@ PlotSpecification residual_plot(const Trace& trace, const std::string& name, con
   }
   const auto sigma = known(reading_noise(trace));
   if (all.empty() || !sigma) return plot;
-  Curve noise = make_curve(fmt::format("noise \u00b1 {} \u03c3", band_sigmas),
-                           {std::ranges::min(all), std::ranges::max(all)}, {0.0, 0.0}, CurveStyle::line, black);
+  Curve noise =
+      make_curve(fmt::format("noise \u00b1 {} \u03c3", band_sigmas),
+                 {std::ranges::min(all), std::ranges::max(all)}, {0.0, 0.0}, CurveStyle::line, black);
   noise.band = band_around(noise.y, {*sigma, *sigma});
   plot.curves.push_back(std::move(noise));
   return plot;
@@ -277,7 +291,8 @@ PlotSpecification residual_plot(const Trace& trace, const std::string& name, con
 
 void add_tests(ReportPage& page, const Trace& trace) {
   Table table{
-      "p: how often pure noise would look at least this bad. Small, below about 0.01: the model misses something.",
+      "p: how often pure noise would look at least this bad. Small, below about 0.01: the model misses "
+      "something.",
       {"Test of what is left"_text, "Base model"_number, "Final model"_number}};
   const auto add = [&](const char* name, double base, double final) {
     if (known(base) || known(final)) table.rows.push_back({name, shown(base, 2), shown(final, 2)});
@@ -286,13 +301,15 @@ void add_tests(ReportPage& page, const Trace& trace) {
   const identification::ResidualTests& final = trace.final_tests;
   add("Runs, p: does the residual keep its sign longer than by chance?", base.runs, final.runs);
   add("Ljung-Box, p: does a residual resemble those just before it?", base.ljung_box, final.ljung_box);
-  add("Lack of fit, p: is the residual larger than the noise of a reading?", base.lack_of_fit, final.lack_of_fit);
-  add("\u03c7\u00b2/dof: squared residual over squared noise; near 1 when only noise is left", trace.base.chi2_dof,
-      trace.final.chi2_dof);
+  add("Lack of fit, p: is the residual larger than the noise of a reading?", base.lack_of_fit,
+      final.lack_of_fit);
+  add("\u03c7\u00b2/dof: squared residual over squared noise; near 1 when only noise is left",
+      trace.base.chi2_dof, trace.final.chi2_dof);
   page.table(table);
   if (trace.noise.source == "replicates") {
     page.paragraph(
-        "The noise is that of repeated series, whose specimens differ smoothly: runs and resemblance are then no sign "
+        "The noise is that of repeated series, whose specimens differ smoothly: runs and resemblance are "
+        "then no sign "
         "of a missing effect, and only the lack of fit counts.");
   }
 }
@@ -344,11 +361,15 @@ void add_parameters(ReportPage& page, const Trace& trace) {
   }
   page.heading("The model now");
   page.paragraph(
-      "Fitted numbers with the interval that holds the true value in 95 of 100 such tests, if the model is right. "
-      "Average: the same whichever effect is right of those that these data cannot tell apart or cannot rule out, each "
+      "Fitted numbers with the interval that holds the true value in 95 of 100 such tests, if the model is "
+      "right. "
+      "Average: the same whichever effect is right of those that these data cannot tell apart or cannot rule "
+      "out, each "
       "by its likelihood. "
-      "Profile: the number was moved and all others refitted until the misfit grew too much (profile likelihood). "
-      "Curvature: 1.96 standard errors, from how sharply the misfit rises about its least; rougher when the interval "
+      "Profile: the number was moved and all others refitted until the misfit grew too much (profile "
+      "likelihood). "
+      "Curvature: 1.96 standard errors, from how sharply the misfit rises about its least; rougher when the "
+      "interval "
       "is wide.");
   page.table(table);
 }
@@ -364,7 +385,8 @@ void add_places(ReportPage& page, const Trace& trace) {
   }
   page.heading("Where the pusher stood");
   page.paragraph(
-      "The file says how exactly the places are known. No effect is named for what such an error explains; the curves "
+      "The file says how exactly the places are known. No effect is named for what such an error explains; "
+      "the curves "
       "are computed at the places that the readings make likeliest (standard deviations).");
   page.table(table);
 }
@@ -377,17 +399,20 @@ Axis axis_of(const std::string& label) {
 }
 
 PlotSpecification function_plot(const ChannelFunction& function) {
-  PlotSpecification plot{.title = fmt::format("Function found in the channel: {}", to_string(function.channel)),
-                         .x = axis_of(function.argument),
-                         .y = axis_of(function.effect),
-                         .width = PlotWidth::full};
-  plot.curves = {make_curve("what these readings ask for", function.at, function.value, CurveStyle::line, blue)};
+  PlotSpecification plot{
+      .title = fmt::format("Function found in the channel: {}", to_string(function.channel)),
+      .x = axis_of(function.argument),
+      .y = axis_of(function.effect),
+      .width = PlotWidth::full};
+  plot.curves = {
+      make_curve("what these readings ask for", function.at, function.value, CurveStyle::line, blue)};
   const Range values = extent(plot.curves);
   Curve& curve = plot.curves.front();
   if (!curve.y.empty() && function.deviation.size() >= curve.y.size()) {
     curve.band = band_around(curve.y, function.deviation);
     plot.note = fmt::format(
-        "Band: \u00b1 {} standard deviations; where it encloses zero, the readings need nothing added.", band_sigmas);
+        "Band: \u00b1 {} standard deviations; where it encloses zero, the readings need nothing added.",
+        band_sigmas);
   }
   if (size_of(values) > 0.0 && size_of(extent(plot.curves)) > dwarfing_band_ratio * size_of(values)) {
     close_up(plot, values, {1.0, 1.0},
@@ -400,8 +425,10 @@ void add_functions(ReportPage& page, const Trace& trace) {
   if (trace.functions.empty()) return;
   page.heading("Where the residual comes from");
   page.paragraph(
-      "Each part of the test, a channel, is given a free function in place of a known effect. A true cause acts alike "
-      "in every series: what is found in some has to explain the others. Carried over: the share of the residual "
+      "Each part of the test, a channel, is given a free function in place of a known effect. A true cause "
+      "acts alike "
+      "in every series: what is found in some has to explain the others. Carried over: the share of the "
+      "residual "
       "beyond noise that it explains there. Explained: the same when all series are used to find it.");
   Table table{"",
               {"Channel"_text, "What it would do, as a function of what"_text, "Carried over"_number,
@@ -413,7 +440,8 @@ void add_functions(ReportPage& page, const Trace& trace) {
   }
   page.table(table);
   if (!trace.functions.front().accepted) {
-    page.paragraph("None carries over well enough to be accepted. The nearest is drawn; take it as a hint, no more.");
+    page.paragraph(
+        "None carries over well enough to be accepted. The nearest is drawn; take it as a hint, no more.");
   }
   page.line_plot(function_plot(trace.functions.front()));
 }
@@ -422,10 +450,12 @@ void add_alternatives(ReportPage& page, const Trace& trace) {
   if (trace.alternatives.empty()) return;
   page.heading("Causes outside the catalogue that would do as well");
   page.paragraph(
-      "A free function in another part of the test, found in some series, explains the others too. These readings "
+      "A free function in another part of the test, found in some series, explains the others too. These "
+      "readings "
       "cannot tell it from the effect above, which is the simpler answer.");
   Table table{"",
-              {"Channel"_text, "What it would do"_text, "As a function of"_text, "Shape"_text, "Carried over"_number}};
+              {"Channel"_text, "What it would do"_text, "As a function of"_text, "Shape"_text,
+               "Carried over"_number}};
   for (const ChannelFunction& f : trace.alternatives) {
     table.rows.push_back({to_string(f.channel), f.effect, f.argument, f.shape, percent(f.carried_over)});
   }
@@ -456,9 +486,11 @@ void add_hypotheses(ReportPage& page, const Trace& trace) {
   if (trace.hypotheses.empty()) return;
   page.heading("Probabilities of causes");
   page.paragraph(
-      "Each cause was fitted and weighed by how well it predicts the readings, with what is assumed before any "
+      "Each cause was fitted and weighed by how well it predicts the readings, with what is assumed before "
+      "any "
       "reading: one in "
-      "five that nothing is missing, and one in three that the cause is in no catalogue. They do not say that the "
+      "five that nothing is missing, and one in three that the cause is in no catalogue. They do not say "
+      "that the "
       "right cause "
       "is among them.");
   Table table{"", {"Cause"_text, "Probability"_number, ""_text}};
@@ -478,8 +510,9 @@ void add_next(ReportPage& page, const Trace& trace) {
   page.callout(next.what, Tone::plain);
   if (!next.separates.empty()) page.paragraph(fmt::format("It separates {}.", joined(next.separates)));
   if (!known(next.difference) || !known(next.sigmas)) return;
-  page.paragraph(fmt::format("There the forces of the two models differ by {} N rms, {} times the noise of a reading.",
-                             measured(next.difference), shown(next.sigmas, 2)));
+  page.paragraph(
+      fmt::format("There the forces of the two models differ by {} N rms, {} times the noise of a reading.",
+                  measured(next.difference), shown(next.sigmas, 2)));
 }
 
 std::string small_print(const Trace& trace, const std::string& version) {
@@ -497,7 +530,8 @@ std::string small_print(const Trace& trace, const std::string& version) {
   double total = 0.0;
   for (const auto& [stage, time] : seconds) {
     total += time;
-    if (time >= least_stage_seconds) stages.push_back(fmt::format("{} {} s", stage, format_significant(time, 2)));
+    if (time >= least_stage_seconds)
+      stages.push_back(fmt::format("{} {} s", stage, format_significant(time, 2)));
   }
   if (!stages.empty()) {
     print += fmt::format(" Computed in {} s: {}.", format_significant(total, 2), fmt::join(stages, ", "));

@@ -63,8 +63,8 @@ void add_refit(Table& table, const Candidate& candidate) {
 
 void add_refits(ReportPage& page, const Round& round) {
   Table table{"The best of them, each added to the model and all numbers refitted.",
-              {"Effect"_code, "Error [N rms]"_number, "Change of BIC"_number, "Its number"_text, "Value"_number,
-               "95 % interval"_number, "Plausible"_text, "Held-out improves"_text}};
+              {"Effect"_code, "Error [N rms]"_number, "Change of BIC"_number, "Its number"_text,
+               "Value"_number, "95 % interval"_number, "Plausible"_text, "Held-out improves"_text}};
   for (const Candidate& candidate : round.candidates) {
     if (candidate.refitted) add_refit(table, candidate);
   }
@@ -85,32 +85,36 @@ void add_reasons(ReportPage& page, const Round& round, Words& told) {
     if (!candidate.why_implausible.empty()) {
       implausible.push_back(fmt::format("{}: {}", effect.name, candidate.why_implausible));
     }
-    if (!candidate.why_too_small.empty()) small.push_back(fmt::format("{}: {}", effect.name, candidate.why_too_small));
+    if (!candidate.why_too_small.empty())
+      small.push_back(fmt::format("{}: {}", effect.name, candidate.why_too_small));
     if (observable(candidate)) continue;
-    const std::string line = fmt::format("{} ({}): {}", effect.name, effect.meaning, candidate.score.unobservable);
+    const std::string line =
+        fmt::format("{} ({}): {}", effect.name, effect.meaning, candidate.score.unobservable);
     if (std::ranges::find(told, line) == told.end()) unseen.push_back(line);
   }
   add_list(page, "Not plausible, a value like this makes no physical sense:", implausible);
   add_list(page, "Too small to be named, or more than the readings bear:", small);
-  add_list(
-      page,
-      told.empty() ? "These data cannot show, whether present or not:" : "Beside those above these data cannot show:",
-      unseen);
+  add_list(page,
+           told.empty() ? "These data cannot show, whether present or not:"
+                        : "Beside those above these data cannot show:",
+           unseen);
   told.insert(told.end(), unseen.begin(), unseen.end());
 }
 
 /// Members of a class that are no candidates of its round are in the model already.
 void add_classes(ReportPage& page, const Round& round) {
   const auto is_candidate = [&](const std::string& name) {
-    return std::ranges::any_of(round.candidates, [&](const Candidate& c) { return c.score.effect->name == name; });
+    return std::ranges::any_of(round.candidates,
+                               [&](const Candidate& c) { return c.score.effect->name == name; });
   };
   Words items;
   for (const Words& members : round.classes) {
     if (members.size() < 2) continue;
     Words fitted = members;
     std::erase_if(fitted, is_candidate);
-    items.push_back(joined(members) +
-                    (fitted.empty() ? "" : fmt::format("; of these the model has {} already", joined(fitted))));
+    items.push_back(
+        joined(members) +
+        (fitted.empty() ? "" : fmt::format("; of these the model has {} already", joined(fitted))));
   }
   add_list(page, "These data cannot tell apart, since the curves change in the same way:", items);
 }
@@ -119,7 +123,8 @@ void add_classes(ReportPage& page, const Round& round) {
 void add_rivals(ReportPage& page, const Trace& trace, const Round& round) {
   if (round.curves.size() < 2) return;
   page.paragraph(
-      "What the best refits leave, measured minus computed. One that could not come near the best was given up before "
+      "What the best refits leave, measured minus computed. One that could not come near the best was given "
+      "up before "
       "its own best fit.");
   std::size_t at = 0;
   for (std::size_t k = 0; k < trace.series.size(); ++k) {
@@ -134,7 +139,8 @@ void add_rivals(ReportPage& page, const Trace& trace, const Round& round) {
     for (const identification::RefitCurves& curves : round.curves) {
       if (at >= curves.force.size() || curves.force[at].size() != travel.size()) continue;
       std::vector<double> left;
-      for (std::size_t i = 0; i < travel.size(); ++i) left.push_back(series.readings->force[i] - curves.force[at][i]);
+      for (std::size_t i = 0; i < travel.size(); ++i)
+        left.push_back(series.readings->force[i] - curves.force[at][i]);
       plot.curves.push_back(make_curve(curves.effect, travel, left, CurveStyle::line, colour++));
     }
     page.line_plot(plot);
@@ -148,9 +154,12 @@ void add_rounds(ReportPage& page, const Trace& trace) {
   if (trace.rounds.empty()) return;
   page.heading("What could be missing");
   page.paragraph(
-      "Every effect of the catalogue is asked in turn. Where: the part of the test in which it sits. Score z: by how "
-      "many standard deviations its pattern stands out of the noise; 0 when the residual points the other way. p: how "
-      "often noise alone would reach such a score, corrected by Holm's rule for asking so many effects at once. "
+      "Every effect of the catalogue is asked in turn. Where: the part of the test in which it sits. Score "
+      "z: by how "
+      "many standard deviations its pattern stands out of the noise; 0 when the residual points the other "
+      "way. p: how "
+      "often noise alone would reach such a score, corrected by Holm's rule for asking so many effects at "
+      "once. "
       "Smallest size: what these readings would reveal nine times in ten.");
   page.paragraph(
       "BIC, the Bayesian information criterion, is the misfit plus a price for every number fitted: an "

@@ -18,7 +18,9 @@ bool put(SparseMatrix& matrix, int slot, double value) {
 }  // namespace
 
 BorderedPattern::BorderedPattern(const BorderedSystem& system, Zeros zeros)
-    : n_(system.matrix.order()), m_(static_cast<int>(system.corner.rows())), b_(system.matrix.half_bandwidth()) {
+    : n_(system.matrix.order()),
+      m_(static_cast<int>(system.corner.rows())),
+      b_(system.matrix.half_bandwidth()) {
   std::vector<std::pair<int, int>> entries;
   const auto want = [&entries, zeros](int i, int j, double value) {
     if (zeros == Zeros::kept || value != 0.0) entries.emplace_back(i, j);

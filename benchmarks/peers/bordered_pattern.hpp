@@ -53,6 +53,7 @@ class BorderedPattern {
 };
 
 /// Lower triangle, or all, of a band matrix, with the zeros within its band.
-[[nodiscard]] SparseMatrix to_sparse(const numerics::SymmetricBandMatrix& matrix, numerics::Triangle triangle);
+[[nodiscard]] SparseMatrix to_sparse(const numerics::SymmetricBandMatrix& matrix,
+                                     numerics::Triangle triangle);
 
 }  // namespace snare::benchmarks

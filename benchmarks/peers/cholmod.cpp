@@ -64,7 +64,8 @@ Cholmod::Cholmod(const SparseMatrix& lower, Ordering ordering) : handles_(new Ha
   h.common.postorder = ordering == Ordering::natural ? 0 : 1;
   cholmod_sparse m = view(lower);
   h.factor = cholmod_analyze(&m, &h.common);
-  if (h.factor == nullptr) throw base::LibraryError("cholmod_analyze", h.common.status, "the pattern is invalid");
+  if (h.factor == nullptr)
+    throw base::LibraryError("cholmod_analyze", h.common.status, "the pattern is invalid");
 }
 
 void Cholmod::HandlesDeleter::operator()(Handles* handles) const noexcept {

@@ -98,7 +98,8 @@ SolveReport solve_kinsol(const NonlinearSystem& system, Eigen::VectorXd& u, cons
   const numerics::SunVector unknowns = numerics::view(u, context);
   const numerics::SunVector scale = numerics::view(ones, context);
   const numerics::SunMatrix matrix = numerics::make_matrix(system.pattern, context);
-  const numerics::SunLinearSolver linear(made(SUNLinSol_KLU(unknowns.get(), matrix.get(), context), "SUNLinSol_KLU"));
+  const numerics::SunLinearSolver linear(
+      made(SUNLinSol_KLU(unknowns.get(), matrix.get(), context), "SUNLinSol_KLU"));
   const std::unique_ptr<void, KinsolDeleter> memory(made(KINCreate(context), "KINCreate"));
   void* kin = memory.get();
   check(KINSetErrHandlerFn(
@@ -126,7 +127,8 @@ SolveReport solve_kinsol(const NonlinearSystem& system, Eigen::VectorXd& u, cons
   report.residual_norm = residual.lpNorm<Eigen::Infinity>() / options.residual_tolerance;
   report.termination = termination;
   // The shortest step ends KINSOL too, wherever that is.
-  if (code == KIN_STEP_LT_STPTOL && !(report.residual_norm <= 1.0)) report.termination = Termination::step_too_small;
+  if (code == KIN_STEP_LT_STPTOL && !(report.residual_norm <= 1.0))
+    report.termination = Termination::step_too_small;
   if (!report.usable()) {
     const std::unique_ptr<char, decltype(&std::free)> name(KINGetReturnFlagName(code), &std::free);
     report.message = std::string("KINSOL stopped with ") + name.get();

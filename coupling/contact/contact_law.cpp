@@ -58,7 +58,8 @@ Vector3d ContactLaw::operator()(double d, double rate) const {
 }
 
 Vector3d ContactLaw::elastic(double d) const {
-  return d > 0.0 ? Vector3d(spring_->force(d), spring_->stiffness(d), spring_->curvature(d)) : Vector3d::Zero();
+  return d > 0.0 ? Vector3d(spring_->force(d), spring_->stiffness(d), spring_->curvature(d))
+                 : Vector3d::Zero();
 }
 
 Damping linear_damping(double c) {
@@ -100,12 +101,14 @@ ContactLaw step_damped_law(double k, double p, double c, double depth) {
 }
 
 ContactLaw quadratic_law(double a, double b, double c) {
-  return ContactLaw(std::make_shared<PressingLaw>(quadratic_law()->with(Vector3d(a, b, c)), pulling_ranges(a, b, c)));
+  return ContactLaw(
+      std::make_shared<PressingLaw>(quadratic_law()->with(Vector3d(a, b, c)), pulling_ranges(a, b, c)));
 }
 
 ContactLaw stretched_wire_law(double stiffness, double half_length, double half_span, Damping damping) {
-  return ContactLaw(stretched_wire_law(middle(half_length, half_span))->with(Vector2d(stiffness * half_length, 0.0)),
-                    std::move(damping));
+  return ContactLaw(
+      stretched_wire_law(middle(half_length, half_span))->with(Vector2d(stiffness * half_length, 0.0)),
+      std::move(damping));
 }
 
 ContactLaw stretched_wire_tangent(double stiffness, double half_length, double half_span, Damping damping) {

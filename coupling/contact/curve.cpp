@@ -54,8 +54,8 @@ int edge_at(const wire::RodPart& rod, double coordinate) {
 }  // namespace
 
 template <int n>
-VertexSlope<n> vertex_slope(const Eigen::Matrix<double, n, 1>& e0, const Eigen::Matrix<double, n, 1>& e1, double h0,
-                            double h1) {
+VertexSlope<n> vertex_slope(const Eigen::Matrix<double, n, 1>& e0, const Eigen::Matrix<double, n, 1>& e1,
+                            double h0, double h1) {
   VertexSlope<n> result;
   if (h0 == 0.0) {
     result.after = 1.0 / h1;

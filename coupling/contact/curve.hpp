@@ -32,10 +32,12 @@ struct VertexSlope {
 /// e0, e1: edge vectors before and after the vertex [m]; h0, h1: their rest lengths [m], 0 where there is
 /// none.
 template <int n>
-[[nodiscard]] VertexSlope<n> vertex_slope(const Eigen::Matrix<double, n, 1>& e0, const Eigen::Matrix<double, n, 1>& e1,
-                                          double h0, double h1);
-extern template VertexSlope<2> vertex_slope<2>(const Eigen::Vector2d&, const Eigen::Vector2d&, double, double);
-extern template VertexSlope<3> vertex_slope<3>(const Eigen::Vector3d&, const Eigen::Vector3d&, double, double);
+[[nodiscard]] VertexSlope<n> vertex_slope(const Eigen::Matrix<double, n, 1>& e0,
+                                          const Eigen::Matrix<double, n, 1>& e1, double h0, double h1);
+extern template VertexSlope<2> vertex_slope<2>(const Eigen::Vector2d&, const Eigen::Vector2d&, double,
+                                               double);
+extern template VertexSlope<3> vertex_slope<3>(const Eigen::Vector3d&, const Eigen::Vector3d&, double,
+                                               double);
 
 /// Weights of the four vertices first ... first + 3 in the curve at a material coordinate, and their
 /// derivatives by it: X(S) = sum N_k x_k, the cubic Hermite curve with the slopes of (C.1).  theory.md (M.6)

@@ -16,7 +16,16 @@ using Basis = std::array<double, 4>;
 
 /// The numbers of a node: the value, and its derivatives by travel d, position s and slack e. A pair (x, x_d) follows
 /// a cubic along the travel.
-enum Slot : std::size_t { value = 0, by_d = 1, by_s = 2, by_ds = 3, by_e = 4, by_de = 5, by_se = 6, by_dse = 7 };
+enum Slot : std::size_t {
+  value = 0,
+  by_d = 1,
+  by_s = 2,
+  by_ds = 3,
+  by_e = 4,
+  by_de = 5,
+  by_se = 6,
+  by_dse = 7
+};
 
 constexpr std::size_t guide_steps = 8;  // of the cell search, a knot
 
@@ -107,12 +116,13 @@ ForceTable::ForceTable(Axes axes, double span, double force_scale, bool mirrored
       lookup.guide.push_back(static_cast<unsigned>(numerics::find_cell(
           knots.data(), knots.size(), lookup.low + static_cast<double>(i) / lookup.steps_per_unit)));
     }
-    for (std::size_t i = 0; i + 1 < knots.size(); ++i) lookup.inverse_widths.push_back(1.0 / (knots[i + 1] - knots[i]));
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i)
+      lookup.inverse_widths.push_back(1.0 / (knots[i + 1] - knots[i]));
   }
 }
 
-ForceTable::ForceTable(Axes axes, const std::vector<double>& values, const std::vector<double>& slopes, double span,
-                       double bending_stiffness, bool mirrored)
+ForceTable::ForceTable(Axes axes, const std::vector<double>& values, const std::vector<double>& slopes,
+                       double span, double bending_stiffness, bool mirrored)
     : ForceTable(std::move(axes), span, bending_stiffness / (span * span), mirrored) {
   const std::size_t nd = axes_[0].size();
   const std::size_t ns = axes_[1].size();
@@ -133,7 +143,8 @@ ForceTable::ForceTable(Axes axes, const std::vector<double>& values, const std::
       for (std::size_t i = 0; i < ns; ++i) {
         for (std::size_t m = 0; m < ns; ++m) {
           const double w = slope_s(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(m));
-          for (const Slot from : {value, by_d}) nodes_[node(k, i, j) + by_s + from] += w * nodes_[node(k, m, j) + from];
+          for (const Slot from : {value, by_d})
+            nodes_[node(k, i, j) + by_s + from] += w * nodes_[node(k, m, j) + from];
         }
       }
     }
@@ -216,10 +227,10 @@ LawValue ForceTable::at(double travel, double position, double slack, Outside ou
     if (!beyond[a]) x[a] = nearest[a];
     if (beyond[a] && outside == Outside::refuse) {
       constexpr std::array<const char*, 3> names{"travel", "position", "slack"};
-      throw std::domain_error(fmt::format("{} of {:.6g} mm is outside the range of the table, {:.6g} to {:.6g} mm{}",
-                                          names[a], 1e3 * std::array{travel, position, slack}[a],
-                                          1e3 * axes_[a].front() * span_, 1e3 * axes_[a].back() * span_,
-                                          a == 1 && mirrored_ ? " and its mirror image" : ""));
+      throw std::domain_error(
+          fmt::format("{} of {:.6g} mm is outside the range of the table, {:.6g} to {:.6g} mm{}", names[a],
+                      1e3 * std::array{travel, position, slack}[a], 1e3 * axes_[a].front() * span_,
+                      1e3 * axes_[a].back() * span_, a == 1 && mirrored_ ? " and its mirror image" : ""));
     }
   }
   x[1] = std::clamp(x[1], std::min(0.0, nearest[1]), std::max(1.0, nearest[1]));  // between the mounts

@@ -38,8 +38,8 @@ class ForceTable {
              double bending_stiffness, bool mirrored);
   /// The table that has these nodes (see `nodes`) and this `force_scale`, as a file holds it: the same to the last bit.
   /// As many nodes as the axes have knots, every axis ascending, travel of two knots at least.
-  [[nodiscard]] static ForceTable from_nodes(Axes axes, std::vector<double> nodes, double span, double force_scale,
-                                             bool mirrored) {
+  [[nodiscard]] static ForceTable from_nodes(Axes axes, std::vector<double> nodes, double span,
+                                             double force_scale, bool mirrored) {
     ForceTable table(std::move(axes), span, force_scale, mirrored);
     table.nodes_ = std::move(nodes);
     return table;

@@ -21,7 +21,8 @@ double default_modulus(double axial_stiffness, double bending_stiffness, double 
 
 double mount_length(double axial_stiffness, double bending_stiffness, double diameter, double radius) {
   constexpr double diameters = 4.0;
-  const double least = diameters * std::sqrt(square_of_diameter(axial_stiffness, bending_stiffness, diameter));
+  const double least =
+      diameters * std::sqrt(square_of_diameter(axial_stiffness, bending_stiffness, diameter));
   return std::isfinite(radius) ? std::max(radius + 0.5 * diameter, least) : least;
 }
 

@@ -47,7 +47,8 @@ struct Opening {
   [[nodiscard]] static Opening between(double gap_rate, double across) {
     if (!(gap_rate * across > 0.0)) return {};
     const bool gap_is_less = std::abs(gap_rate) < std::abs(across);
-    const double less = gap_is_less ? gap_rate : across, more = gap_is_less ? across : gap_rate, x = less / more;
+    const double less = gap_is_less ? gap_rate : across, more = gap_is_less ? across : gap_rate,
+                 x = less / more;
     const double cube = x * x * x, sum = 1.0 + cube;
     const double by_less = 2.0 * x * (2.0 - cube) / (sum * sum),
                  by_more = 2.0 * x * x * (2.0 * cube - 1.0) / (sum * sum);
@@ -61,6 +62,7 @@ struct Opening {
 /// How long a piece of a wire gives way where its mount meets a surface [m]: as long as the surface's radius with the wire's, but at
 /// least four diameters. The arguments as with default_modulus; radius: smallest of the convex surface [m], 0 or infinite: none.
 ///                                                                                          theory.md (M.35)
-[[nodiscard]] double mount_length(double axial_stiffness, double bending_stiffness, double diameter, double radius);
+[[nodiscard]] double mount_length(double axial_stiffness, double bending_stiffness, double diameter,
+                                  double radius);
 
 }  // namespace snare::coupling

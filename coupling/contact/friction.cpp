@@ -83,9 +83,10 @@ TangentForceIn<N> tangent_force(const MotionFriction& friction, const BristleSta
 //   f.w - mu_s/z_m (z.(p_e dz/dt) + (dp_e/dt) z^2/2) = mu_s p_e/(z_m tau) (m.e - 2 m.z + z^2) + mu_s/(2 z_m) (G - dp_e/dt) z^2,
 // of which the first part is at least that of (m - z)^2, and the second is not negative.
 template <int N>
-BristleFlowIn<N> bristle_flow(const MotionFriction& friction, const BristleStateIn<N>& at, const TangentForceIn<N>& f,
-                              double elastic_rate) {
-  const double time = friction.bristle_time, give = friction.bristle_displacement / friction.static_coefficient;
+BristleFlowIn<N> bristle_flow(const MotionFriction& friction, const BristleStateIn<N>& at,
+                              const TangentForceIn<N>& f, double elastic_rate) {
+  const double time = friction.bristle_time,
+               give = friction.bristle_displacement / friction.static_coefficient;
   BristleFlowIn<N> b;
   b.growth_follows = elastic_rate > -at.elastic / time;
   b.growth = std::max(elastic_rate, -at.elastic / time);
@@ -94,14 +95,17 @@ BristleFlowIn<N> bristle_flow(const MotionFriction& friction, const BristleState
                                       ? Vector<double, N>((give * f.force - at.elastic * at.bristle) / time)
                                       : at.elastic * at.sliding;
   b.flow = moved - 0.5 * b.growth * at.bristle;
-  b.heat = f.force.dot(at.sliding) - (at.bristle.dot(b.flow) + 0.5 * elastic_rate * at.bristle.squaredNorm()) / give;
+  b.heat = f.force.dot(at.sliding) -
+           (at.bristle.dot(b.flow) + 0.5 * elastic_rate * at.bristle.squaredNorm()) / give;
   return b;
 }
 
 template <int N>
-Vector<double, N> flow_change(const MotionFriction& friction, const BristleStateIn<N>& at, const TangentForceIn<N>& f,
-                              const BristleFlowIn<N>& flow, const BristleChangeIn<N>& by) {
-  const double time = friction.bristle_time, give = friction.bristle_displacement / friction.static_coefficient;
+Vector<double, N> flow_change(const MotionFriction& friction, const BristleStateIn<N>& at,
+                              const TangentForceIn<N>& f, const BristleFlowIn<N>& flow,
+                              const BristleChangeIn<N>& by) {
+  const double time = friction.bristle_time,
+               give = friction.bristle_displacement / friction.static_coefficient;
   const double growth = flow.growth_follows ? by.elastic_rate : -by.elastic / time;
   return (give * force_change(f, by) - by.elastic * at.bristle - at.elastic * by.bristle) / time -
          0.5 * (growth * at.bristle + flow.growth * by.bristle);
@@ -110,13 +114,15 @@ Vector<double, N> flow_change(const MotionFriction& friction, const BristleState
 // For contact of wires, in the axes of the tangent plane, and of bodies, in space.
 template TangentForceIn<2> tangent_force(const MotionFriction&, const BristleStateIn<2>&);
 template TangentForceIn<3> tangent_force(const MotionFriction&, const BristleStateIn<3>&);
-template BristleFlowIn<2> bristle_flow(const MotionFriction&, const BristleStateIn<2>&, const TangentForceIn<2>&,
-                                       double);
-template BristleFlowIn<3> bristle_flow(const MotionFriction&, const BristleStateIn<3>&, const TangentForceIn<3>&,
-                                       double);
-template Vector<double, 2> flow_change(const MotionFriction&, const BristleStateIn<2>&, const TangentForceIn<2>&,
-                                       const BristleFlowIn<2>&, const BristleChangeIn<2>&);
-template Vector<double, 3> flow_change(const MotionFriction&, const BristleStateIn<3>&, const TangentForceIn<3>&,
-                                       const BristleFlowIn<3>&, const BristleChangeIn<3>&);
+template BristleFlowIn<2> bristle_flow(const MotionFriction&, const BristleStateIn<2>&,
+                                       const TangentForceIn<2>&, double);
+template BristleFlowIn<3> bristle_flow(const MotionFriction&, const BristleStateIn<3>&,
+                                       const TangentForceIn<3>&, double);
+template Vector<double, 2> flow_change(const MotionFriction&, const BristleStateIn<2>&,
+                                       const TangentForceIn<2>&, const BristleFlowIn<2>&,
+                                       const BristleChangeIn<2>&);
+template Vector<double, 3> flow_change(const MotionFriction&, const BristleStateIn<3>&,
+                                       const TangentForceIn<3>&, const BristleFlowIn<3>&,
+                                       const BristleChangeIn<3>&);
 
 }  // namespace snare::coupling

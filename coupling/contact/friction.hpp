@@ -16,10 +16,12 @@ enum class ContactFriction {
 /// force. The default is the order of two steel cylinders of 1.5 mm and 6 mm (Mindlin 1949: k = 8 a G*, 0.4 um at
 /// 10 N): small beside every travel of interest, large beside the tolerances.
 struct MotionFriction {
-  double static_coefficient = 0.0;   ///< >= 0: up to static_speed [-]
-  double dynamic_coefficient = 0.0;  ///< from dynamic_speed on, >= 0; at most the static one with stick and slip [-]
-  double static_speed = 1e-3;        ///< smooth: below it the friction falls to zero [m/s], > 0. stick_slip: >= 0
-  double dynamic_speed = 1.0;  ///< [m/s], > static_speed; stick_slip: both 0 let the slip have the dynamic one at once
+  double static_coefficient = 0.0;  ///< >= 0: up to static_speed [-]
+  double dynamic_coefficient =
+      0.0;  ///< from dynamic_speed on, >= 0; at most the static one with stick and slip [-]
+  double static_speed = 1e-3;  ///< smooth: below it the friction falls to zero [m/s], > 0. stick_slip: >= 0
+  double dynamic_speed =
+      1.0;  ///< [m/s], > static_speed; stick_slip: both 0 let the slip have the dynamic one at once
   ContactFriction law = ContactFriction::stick_slip;
   double bristle_displacement = 1e-6;  ///< of the bristle when it slides [m], > 0
   double bristle_time = 1e-5;          ///< dashpot over spring of the bristle [s], > 0
@@ -95,13 +97,16 @@ struct BristleChangeIn {
 };
 /// The change of `force`: the first derivative of tangent_force, linear in `by`. [N, or N/m of loads]
 template <int N>
-[[nodiscard]] Eigen::Vector<double, N> force_change(const TangentForceIn<N>& f, const BristleChangeIn<N>& by) {
-  return f.by_bristle * by.bristle + f.by_sliding * by.sliding + f.by_normal * by.normal + f.by_elastic * by.elastic;
+[[nodiscard]] Eigen::Vector<double, N> force_change(const TangentForceIn<N>& f,
+                                                    const BristleChangeIn<N>& by) {
+  return f.by_bristle * by.bristle + f.by_sliding * by.sliding + f.by_normal * by.normal +
+         f.by_elastic * by.elastic;
 }
 /// The change of `flow`: the first derivative of bristle_flow, linear in `by`. [N m/s, or N/s of loads]
 template <int N>
-[[nodiscard]] Eigen::Vector<double, N> flow_change(const MotionFriction& friction, const BristleStateIn<N>& at,
-                                                   const TangentForceIn<N>& f, const BristleFlowIn<N>& flow,
+[[nodiscard]] Eigen::Vector<double, N> flow_change(const MotionFriction& friction,
+                                                   const BristleStateIn<N>& at, const TangentForceIn<N>& f,
+                                                   const BristleFlowIn<N>& flow,
                                                    const BristleChangeIn<N>& by);
 
 using BristleState = BristleStateIn<2>;

@@ -35,7 +35,9 @@ class PolynomialLaw final : public SpringLaw {
   double force(double d) const override { return (a_ * d + b_) * d + c_; }
   double stiffness(double d) const override { return 2.0 * a_ * d + b_; }
   double curvature(double /*d*/) const override { return 2.0 * a_; }
-  double energy(double d) const override { return a_ * std::pow(d, 3) / 3.0 + b_ * std::pow(d, 2) / 2.0 + c_ * d; }
+  double energy(double d) const override {
+    return a_ * std::pow(d, 3) / 3.0 + b_ * std::pow(d, 2) / 2.0 + c_ * d;
+  }
 
  private:
   double a_, b_, c_;
@@ -44,7 +46,8 @@ class PolynomialLaw final : public SpringLaw {
 /// Polynomials in the travel whose coefficients are the numbers, highest power first.
 class Polynomial final : public LawForm {
  public:
-  Polynomial(std::string name, std::vector<int> powers) : name_(std::move(name)), powers_(std::move(powers)) {}
+  Polynomial(std::string name, std::vector<int> powers)
+      : name_(std::move(name)), powers_(std::move(powers)) {}
 
   std::string name() const override { return name_; }
   std::string formula() const override {
@@ -85,7 +88,8 @@ class Polynomial final : public LawForm {
   double force(const VectorXd& p, double d) const override { return p.dot(by_parameters(p, d)); }
   VectorXd by_parameters(const VectorXd&, double d) const override {
     VectorXd g(static_cast<Eigen::Index>(powers_.size()));
-    for (std::size_t i = 0; i < powers_.size(); ++i) g[static_cast<Eigen::Index>(i)] = std::pow(d, powers_[i]);
+    for (std::size_t i = 0; i < powers_.size(); ++i)
+      g[static_cast<Eigen::Index>(i)] = std::pow(d, powers_[i]);
     return g;
   }
   std::vector<VectorXd> guesses(double, double) const override {
@@ -104,7 +108,9 @@ class PowerLaw final : public SpringLaw {
 
   double force(double d) const override { return k_ * std::pow(d, p_); }
   double stiffness(double d) const override { return k_ * p_ * std::pow(d, p_ - 1.0); }
-  double curvature(double d) const override { return p_ == 1.0 ? 0.0 : k_ * p_ * (p_ - 1.0) * std::pow(d, p_ - 2.0); }
+  double curvature(double d) const override {
+    return p_ == 1.0 ? 0.0 : k_ * p_ * (p_ - 1.0) * std::pow(d, p_ - 2.0);
+  }
   double energy(double d) const override { return k_ * std::pow(d, p_ + 1.0) / (p_ + 1.0); }
 
  private:
@@ -180,7 +186,8 @@ class StretchedLaw final : public SpringLaw {
   }
   double curvature(double d) const override {
     const Pieces now = pieces(d);
-    return now.stretch > 0.0 ? k_ * (3.0 * now.lift * now.bend / place_.length + now.stretch * now.turn) : 0.0;
+    return now.stretch > 0.0 ? k_ * (3.0 * now.lift * now.bend / place_.length + now.stretch * now.turn)
+                             : 0.0;
   }
   double energy(double d) const override { return stored(d) - stored(0.0); }
 
@@ -201,7 +208,9 @@ class Stretched final : public LawForm {
   explicit Stretched(const LawPlace& place) : place_(place), height_(taut_height(place)) {}
 
   std::string name() const override { return "stretched_wire"; }
-  std::string formula() const override { return "F = K (l1 + l2 - L)/L (y/l1 + y/l2), y = q + d - d0, 0 while slack"; }
+  std::string formula() const override {
+    return "F = K (l1 + l2 - L)/L (y/l1 + y/l2), y = q + d - d0, 0 while slack";
+  }
   std::vector<LawParameter> parameters() const override { return {{"K", "N"}, {"d0", "m"}}; }
   std::string expression(const VectorXd& p, const std::string& prefix) const override {
     // Written with y = y0 + d; slack below the taut height.
@@ -211,9 +220,10 @@ class Stretched final : public LawForm {
     };
     const std::string l1 = length(place_.position);
     const std::string l2 = length(place_.span - place_.position);
-    const std::string strain = fmt::format("({} + {} - {}) / {}", l1, l2, digits(place_.length), digits(place_.length));
-    return fmt::format("{} * 0.5 * ({} + {}fabs({})) * ({} / {} + {} / {})", digits(p[0]), strain, prefix, strain, y,
-                       l1, y, l2);
+    const std::string strain =
+        fmt::format("({} + {} - {}) / {}", l1, l2, digits(place_.length), digits(place_.length));
+    return fmt::format("{} * 0.5 * ({} + {}fabs({})) * ({} / {} + {} / {})", digits(p[0]), strain, prefix,
+                       strain, y, l1, y, l2);
   }
   SpringLawPointer with(const VectorXd& p) const override {
     return std::make_shared<StretchedLaw>(place_, height_, p[0], p[1]);
@@ -251,7 +261,9 @@ class TautLinearLaw final : public SpringLaw {
   double energy(double d) const override { return stored(d) - stored(0.0); }
 
  private:
-  [[nodiscard]] double stored(double d) const { return 0.5 * k_ * std::pow(std::max(0.0, d - free_travel_), 2); }
+  [[nodiscard]] double stored(double d) const {
+    return 0.5 * k_ * std::pow(std::max(0.0, d - free_travel_), 2);
+  }
 
   double k_, free_travel_;
 };
@@ -298,14 +310,19 @@ class Tensioned final : public LawForm {
   std::string name() const override { return "tensioned_wire"; }
   std::string formula() const override { return "F = k(EI, T, s) d, clamped-clamped under the tension T"; }
   std::vector<LawParameter> parameters() const override { return {{"T", "N"}}; }
-  std::string expression(const VectorXd& p, const std::string&) const override { return digits(at(p).value) + " * d"; }
+  std::string expression(const VectorXd& p, const std::string&) const override {
+    return digits(at(p).value) + " * d";
+  }
   SpringLawPointer with(const VectorXd& p) const override {
     return std::make_shared<PolynomialLaw>(0.0, at(p).value, 0.0);
   }
-  VectorXd by_parameters(const VectorXd& p, double d) const override { return vector({at(p).by_tension * d}); }
+  VectorXd by_parameters(const VectorXd& p, double d) const override {
+    return vector({at(p).by_tension * d});
+  }
   std::vector<VectorXd> guesses(double force_scale, double travel) const override {
     const double s = place_.position;
-    const double string = force_scale / travel * s * (place_.span - s) / place_.span;  // tension of a string as stiff
+    const double string =
+        force_scale / travel * s * (place_.span - s) / place_.span;  // tension of a string as stiff
     return {vector({0.0}), vector({0.3 * string}), vector({string})};
   }
   bool admissible(const VectorXd& p) const override {

@@ -67,7 +67,8 @@ class LawForm {
 
   /// Where a least-squares search may begin, several guesses; the best of them is used. force_scale [N] and travel_scale [m]:
   /// largest force and travel of the points.
-  [[nodiscard]] virtual std::vector<Eigen::VectorXd> guesses(double force_scale, double travel_scale) const = 0;
+  [[nodiscard]] virtual std::vector<Eigen::VectorXd> guesses(double force_scale,
+                                                             double travel_scale) const = 0;
   /// Whether numbers, in their units, make sense (a positive power); a search does not leave them.
   [[nodiscard]] virtual bool admissible(const Eigen::VectorXd& /*p*/) const { return true; }
 

@@ -57,7 +57,8 @@ class Words {
     double value = 0.0;
     const std::string_view digits = w.starts_with('+') ? w.substr(1) : w;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (digits.empty() || error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
+    if (digits.empty() || error != std::errc() || end != digits.data() + digits.size() ||
+        !std::isfinite(value))
       fail(w, "must be a finite number");
     return value;
   }
@@ -118,7 +119,8 @@ void read_ascii_stl(Words& words, TriangleMesh& mesh) {
     if (words.is(0, "endsolid")) {
       // A file may hold several solids.
       ended = !words.next_line();
-      if (!ended && !words.is(0, "solid")) words.fail(words.word(0), "must be \"solid\" or the end of the file");
+      if (!ended && !words.is(0, "solid"))
+        words.fail(words.word(0), "must be \"solid\" or the end of the file");
       continue;
     }
     if (!words.is(0, "facet")) words.fail(words.word(0), "must be \"facet\" or \"endsolid\"");
@@ -156,8 +158,8 @@ void read_binary_stl(std::string_view data, TriangleMesh& mesh) {
         x = static_cast<double>(little_endian<float>(at));
         at += sizeof(float);
         if (!std::isfinite(x)) {
-          throw base::InputError(
-              {mesh.name, 0, fmt::format("mesh triangle {}", k), fmt::format("{}", x), "must be a finite number"});
+          throw base::InputError({mesh.name, 0, fmt::format("mesh triangle {}", k), fmt::format("{}", x),
+                                  "must be a finite number"});
         }
       }
       corner = weld(p);
@@ -197,7 +199,8 @@ void read_obj(Words& words, TriangleMesh& mesh) {
 }
 
 void read_off(Words& words, TriangleMesh& mesh) {
-  if (!words.next_line() || words.word(0) != "OFF") words.fail(words.word(0), "must be \"OFF\" in the first line");
+  if (!words.next_line() || words.word(0) != "OFF")
+    words.fail(words.word(0), "must be \"OFF\" in the first line");
   std::size_t first = 1;
   if (words.count() == 1) {
     if (!words.next_line()) words.fail("", "must have the numbers of points and faces");
@@ -251,7 +254,8 @@ TriangleMesh read_triangle_mesh(const std::filesystem::path& file, double unit) 
   } else {
     // The length tells a binary STL, whose header may begin with "solid" too.
     const std::size_t fixed = stl_header + sizeof(std::uint32_t);
-    const std::size_t count = data.size() >= fixed ? little_endian<std::uint32_t>(data.data() + stl_header) : 0;
+    const std::size_t count =
+        data.size() >= fixed ? little_endian<std::uint32_t>(data.data() + stl_header) : 0;
     const bool ascii = data.substr(0, 5) == "solid";
     if (data.size() >= fixed && data.size() == fixed + count * stl_triangle)
       read_binary_stl(data, mesh);
@@ -259,13 +263,15 @@ TriangleMesh read_triangle_mesh(const std::filesystem::path& file, double unit) 
       read_ascii_stl(words, mesh);
     else
       refuse(fmt::format("{} bytes", data.size()),
-             data.size() < fixed ? "is no STL: neither \"solid\" nor a binary header"
-                                 : fmt::format("is no STL: neither \"solid\" nor the {} bytes of {} binary triangles",
-                                               fixed + count * stl_triangle, count));
+             data.size() < fixed
+                 ? "is no STL: neither \"solid\" nor a binary header"
+                 : fmt::format("is no STL: neither \"solid\" nor the {} bytes of {} binary triangles",
+                               fixed + count * stl_triangle, count));
   }
   if (mesh.triangles.empty()) refuse("0 triangles", "must have some");
   if (mesh.triangles.size() > most_triangles)
-    refuse(fmt::format("{} triangles", mesh.triangles.size()), fmt::format("must have at most {}", most_triangles));
+    refuse(fmt::format("{} triangles", mesh.triangles.size()),
+           fmt::format("must have at most {}", most_triangles));
   for (Vector3d& p : mesh.points) p *= unit;
   return mesh;
 }

@@ -54,7 +54,8 @@ class Problems {
   explicit Problems(std::string file) : file_(std::move(file)) {}
   void add(const std::string& key, const std::string& value, const std::string& requirement) {
     const std::size_t count = ++counts_[requirement];
-    if (count <= most_problems) list_.push_back({file_, 0, key.empty() ? "mesh" : "mesh " + key, value, requirement});
+    if (count <= most_problems)
+      list_.push_back({file_, 0, key.empty() ? "mesh" : "mesh " + key, value, requirement});
   }
   void raise() {
     if (list_.empty()) return;
@@ -171,8 +172,9 @@ MeshShape::MeshShape(const TriangleMesh& mesh) {
   // A shell inside another faces its hollow.
   const double volume = volume_of(m);
   if (volume <= 0.0 || !pmp::does_bound_a_volume(m)) {
-    problems.add("", fmt::format("volume {:.6g} m^3", volume),
-                 fmt::format("must face outward: {} turned inside out", volume <= 0.0 ? "it is" : "a part of it is"));
+    problems.add(
+        "", fmt::format("volume {:.6g} m^3", volume),
+        fmt::format("must face outward: {} turned inside out", volume <= 0.0 ? "it is" : "a part of it is"));
     problems.raise();
   }
 
@@ -196,7 +198,8 @@ MeshShape::MeshShape(const TriangleMesh& mesh) {
     }
   }
   FastMesh& fast = surface->fast_mesh;
-  for (const Mesh::Vertex_index v : m.vertices()) fast.add_vertex({m.point(v).x(), m.point(v).y(), m.point(v).z()});
+  for (const Mesh::Vertex_index v : m.vertices())
+    fast.add_vertex({m.point(v).x(), m.point(v).y(), m.point(v).z()});
   for (const Mesh::Face_index f : m.faces()) {
     std::vector<FastMesh::Vertex_index> corners;
     for (const Mesh::Vertex_index v : m.vertices_around_face(m.halfedge(f))) corners.emplace_back(v.idx());
@@ -214,7 +217,8 @@ MeshShape::~MeshShape() = default;
 // What lies straight above a face is the face's, though its foot be on an edge: between the triangles of one flat face, or to round-off.
 MeshShape::Near MeshShape::nearest(const Vector3d& p) const {
   const Mesh& m = surface_->mesh;
-  const Mesh::Face_index face(surface_->tree->closest_point_and_primitive({p.x(), p.y(), p.z()}).second.idx());
+  const Mesh::Face_index face(
+      surface_->tree->closest_point_and_primitive({p.x(), p.y(), p.z()}).second.idx());
   std::array<Mesh::Halfedge_index, 3> sides;
   std::array<Vector3d, 3> corner;  // the start of every side
   sides[0] = m.halfedge(face);

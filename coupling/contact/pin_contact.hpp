@@ -61,7 +61,7 @@ struct SlidingContact {
   double slip_sign = 0.0;
   /// The material point never changes (the gauge of a wire on supports)
   bool holds_material = false;
-  double last_coordinate = 0.0;                             ///< material coordinate at the last accepted state [m]
+  double last_coordinate = 0.0;  ///< material coordinate at the last accepted state [m]
   Eigen::Vector2d last_tangent = Eigen::Vector2d::UnitX();  ///< t at the last accepted state
   /// On the wire at the last accepted state [N]
   Eigen::Vector2d last_force = Eigen::Vector2d::Zero();
@@ -77,8 +77,8 @@ struct WrappedContact {
   int node = 0;
   /// Coulomb coefficient [-], >= 0.
   double friction = 0.0;
-  ContactStatus status = ContactStatus::slip;              ///< stick or slip
-  double slip_sign = 0.0;                                  ///< of the increase of its angle about the pin's centre
+  ContactStatus status = ContactStatus::slip;  ///< stick or slip
+  double slip_sign = 0.0;                      ///< of the increase of its angle about the pin's centre
   Eigen::Vector2d last_radial = Eigen::Vector2d::UnitY();  ///< unit vector from the pin's centre
   /// On the wire at the last accepted state [N]
   Eigen::Vector2d last_force = Eigen::Vector2d::Zero();

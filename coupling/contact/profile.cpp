@@ -50,14 +50,14 @@ Vector2d Profile::Edge::normal_at(const Vector2d& p) const {
 Profile::Profile(const Vector2d& start, const std::vector<ProfileEdge>& edges) : loop_(start.x() > 0.0) {
   std::vector<base::InputProblem> problems;
   const auto complain = [&problems](std::size_t k, const Vector2d& value, const std::string& requirement) {
-    problems.push_back(
-        {"", 0, fmt::format("profile[{}]", k + 1), fmt::format("({}, {})", value.x(), value.y()), requirement});
+    problems.push_back({"", 0, fmt::format("profile[{}]", k + 1),
+                        fmt::format("({}, {})", value.x(), value.y()), requirement});
   };
   if (edges.size() < 2)
     problems.push_back({"", 0, "profile", fmt::format("{} edges", edges.size()), "must have two or more"});
   if (!start.allFinite() || start.x() < 0.0)
-    problems.push_back(
-        {"", 0, "profile", fmt::format("({}, {})", start.x(), start.y()), "must begin on the axis or right of it"});
+    problems.push_back({"", 0, "profile", fmt::format("({}, {})", start.x(), start.y()),
+                        "must begin on the axis or right of it"});
   Vector2d from = start;
   for (std::size_t k = 0; k < edges.size() && problems.empty(); ++k) {
     const ProfileEdge& given = edges[k];
@@ -71,7 +71,8 @@ Profile::Profile(const Vector2d& start, const std::vector<ProfileEdge>& edges) :
     } else if (edge.length == 0.0) {
       complain(k, given.end, "must not be where the edge begins");
     } else if (std::abs(given.curvature) * edge.length > 2.0) {
-      complain(k, given.end, fmt::format("needs a radius of curvature of half its chord of {} m or more", edge.length));
+      complain(k, given.end,
+               fmt::format("needs a radius of curvature of half its chord of {} m or more", edge.length));
     } else if (k + 1 == edges.size() && (loop_ ? given.end != start : given.end.x() != 0.0)) {
       complain(k, given.end, loop_ ? "must end where it began" : "must end on the axis");
     }
@@ -79,7 +80,8 @@ Profile::Profile(const Vector2d& start, const std::vector<ProfileEdge>& edges) :
     if (given.curvature != 0.0) {
       const double radius = 1.0 / std::abs(given.curvature);
       const double deep = std::sqrt(std::max(0.0, radius * radius - 0.25 * edge.length * edge.length));
-      edge.centre = 0.5 * (edge.from + edge.to) - std::copysign(deep, given.curvature) * right_of(edge.direction);
+      edge.centre =
+          0.5 * (edge.from + edge.to) - std::copysign(deep, given.curvature) * right_of(edge.direction);
     }
     edges_.push_back(edge);
     from = edge.to;
@@ -88,7 +90,8 @@ Profile::Profile(const Vector2d& start, const std::vector<ProfileEdge>& edges) :
     const std::vector<Vector2d> line = outline(whole(), test_chords);
     double area = 0.0;
     for (std::size_t i = 0; i + 1 < line.size(); ++i) area += 0.5 * cross(line[i], line[i + 1]);
-    if (!(area > 0.0)) problems.push_back({"", 0, "profile", "", "must run upward, with the outside on its right"});
+    if (!(area > 0.0))
+      problems.push_back({"", 0, "profile", "", "must run upward, with the outside on its right"});
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {
       if (line[i].x() < 0.0)
         problems.push_back(
@@ -107,9 +110,10 @@ Profile::Profile(const Vector2d& start, const std::vector<ProfileEdge>& edges) :
     const Vector2d mirror(-1.0, 1.0);
     const Vector2d before = k > 0 || loop_ ? edge(k - 1 + n).normal_at(edge(k - 1 + n).to)
                                            : edge(0).normal_at(edge(0).from).cwiseProduct(mirror);
-    const Vector2d after =
-        k < n || loop_ ? edge(k).normal_at(edge(k).from) : edge(n - 1).normal_at(edge(n - 1).to).cwiseProduct(mirror);
-    corners_.push_back({k < n ? edge(k).from : edge(n - 1).to, before + after, cross(before, after) < -smooth_turn});
+    const Vector2d after = k < n || loop_ ? edge(k).normal_at(edge(k).from)
+                                          : edge(n - 1).normal_at(edge(n - 1).to).cwiseProduct(mirror);
+    corners_.push_back(
+        {k < n ? edge(k).from : edge(n - 1).to, before + after, cross(before, after) < -smooth_turn});
   }
 }
 
@@ -202,7 +206,8 @@ Profile::Near Profile::nearest(const Vector2d& p, Chain chain) const {
 Profile rounded_profile(const std::vector<Vector2d>& corners, const std::vector<double>& radii) {
   assert(corners.size() == radii.size());
   const std::size_t n = corners.size();
-  if (n < 3) throw base::InputError({"", 0, "profile", fmt::format("{} corners", n), "must have three or more"});
+  if (n < 3)
+    throw base::InputError({"", 0, "profile", fmt::format("{} corners", n), "must have three or more"});
   const bool loop = corners.front().x() > 0.0;
   std::vector<base::InputProblem> problems;
   // Of every corner: how far from it its arc begins on either side, and the arc's curvature.
@@ -211,7 +216,8 @@ Profile rounded_profile(const std::vector<Vector2d>& corners, const std::vector<
   for (std::size_t k = 0; k < n; ++k) {
     if (radii[k] == 0.0) continue;
     const auto complain = [&](const std::string& requirement) {
-      problems.push_back({"", 0, fmt::format("rounding[{}]", k + 1), fmt::format("{}", radii[k]), requirement});
+      problems.push_back(
+          {"", 0, fmt::format("rounding[{}]", k + 1), fmt::format("{}", radii[k]), requirement});
     };
     if (!loop && (k == 0 || k + 1 == n)) {
       complain("must be 0 on the axis");
@@ -245,7 +251,8 @@ Profile rounded_profile(const std::vector<Vector2d>& corners, const std::vector<
     const Vector2d arc_begin = corner - reach[k] * side.normalized();
     if (left > round_off * side.norm() || side.norm() == 0.0) add(arc_begin, 0.0);
     if (reach[k] > 0.0)
-      add(k == 0 ? start : Vector2d(corner + reach[k] * (corners[(k + 1) % n] - corner).normalized()), curvature[k]);
+      add(k == 0 ? start : Vector2d(corner + reach[k] * (corners[(k + 1) % n] - corner).normalized()),
+          curvature[k]);
   }
   if (!problems.empty()) throw base::InputError(problems);
   if (loop) edges.back().end = start;

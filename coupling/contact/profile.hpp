@@ -9,7 +9,8 @@ namespace snare::coupling {
 /// One edge of a profile, from the end of the one before: a straight line or the minor arc of a circle.
 struct ProfileEdge {
   Eigen::Vector2d end = Eigen::Vector2d::Zero();  ///< (distance from the axis, height z) [m]
-  double curvature = 0.0;  ///< [1/m]; > 0 bulges outward, < 0 inward, 0: straight; at most 2/(length of the chord)
+  double curvature =
+      0.0;  ///< [1/m]; > 0 bulges outward, < 0 inward, 0: straight; at most 2/(length of the chord)
 };
 
 /// The section of a solid of revolution in the half plane (rho, z), bounded by straight edges and arcs.
@@ -71,6 +72,7 @@ class Profile {
 /// Edges through the corners of a polygon, each rounded by an arc of its radius that touches both sides [m, >= 0; 0: sharp]. Where the
 /// first corner is off the axis the last is joined to it. Throws InputError as the profile does, and where a side is too short for the
 /// arcs at its ends or an end on the axis is rounded.
-[[nodiscard]] Profile rounded_profile(const std::vector<Eigen::Vector2d>& corners, const std::vector<double>& radii);
+[[nodiscard]] Profile rounded_profile(const std::vector<Eigen::Vector2d>& corners,
+                                      const std::vector<double>& radii);
 
 }  // namespace snare::coupling

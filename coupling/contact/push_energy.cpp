@@ -14,7 +14,8 @@ struct Cubic {
   std::array<double, 4> weight, by, by_twice;
 
   Cubic(double t, double h)
-      : weight{(1 + 2 * t) * (1 - t) * (1 - t), h * t * (1 - t) * (1 - t), t * t * (3 - 2 * t), h * t * t * (t - 1)},
+      : weight{(1 + 2 * t) * (1 - t) * (1 - t), h * t * (1 - t) * (1 - t), t * t * (3 - 2 * t),
+               h * t * t * (t - 1)},
         by{6 * t * (t - 1) / h, (1 - t) * (1 - 3 * t), 6 * t * (1 - t) / h, t * (3 * t - 2)},
         by_twice{(12 * t - 6) / (h * h), (6 * t - 4) / h, (6 - 12 * t) / (h * h), (6 * t - 2) / h} {}
 };
@@ -42,13 +43,15 @@ PushEnergy::PushEnergy(const ForceTable& table, double slack) {
     share = Cubic((e - slacks[below]) / h, h).weight;
   }
   const std::size_t above = std::min(below + 1, slacks.size() - 1);
-  const auto node = [&, &travels = travels, &positions = positions](std::size_t k, std::size_t i, std::size_t slot) {
+  const auto node = [&, &travels = travels, &positions = positions](std::size_t k, std::size_t i,
+                                                                    std::size_t slot) {
     const auto number = [&](std::size_t j, std::size_t of) {
-      return table.nodes()[ForceTable::numbers_a_node * (k + travels.size() * (i + positions.size() * j)) + of];
+      return table
+          .nodes()[ForceTable::numbers_a_node * (k + travels.size() * (i + positions.size() * j)) + of];
     };
     constexpr std::size_t by_slack = 4;
-    return share[0] * number(below, slot) + share[1] * number(below, slot + by_slack) + share[2] * number(above, slot) +
-           share[3] * number(above, slot + by_slack);
+    return share[0] * number(below, slot) + share[1] * number(below, slot + by_slack) +
+           share[2] * number(above, slot) + share[3] * number(above, slot + by_slack);
   };
   const auto add = [&, &travels = travels](std::size_t i, double position, double sense) {
     std::vector<double> x, force, rise, slope, twist;

@@ -40,9 +40,11 @@ class RangedLaw final : public SpringLaw {
   double curvature(double d) const override;
   double energy(double d) const override;
 
-  [[nodiscard]] double end() const noexcept { return end_; }                      ///< last travel of the range [m]
-  [[nodiscard]] double end_force() const noexcept { return end_force_; }          ///< [N]
-  [[nodiscard]] double end_stiffness() const noexcept { return end_stiffness_; }  ///< of the continuation [N/m]
+  [[nodiscard]] double end() const noexcept { return end_; }              ///< last travel of the range [m]
+  [[nodiscard]] double end_force() const noexcept { return end_force_; }  ///< [N]
+  [[nodiscard]] double end_stiffness() const noexcept {
+    return end_stiffness_;
+  }  ///< of the continuation [N/m]
 
  private:
   PressingLaw law_;  // within the range

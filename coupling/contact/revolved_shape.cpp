@@ -74,7 +74,8 @@ DistanceField RevolvedShape::at(const Vector3d& p) const {
   field.normal = near.normal.x() * out + near.normal.y() * Vector3d::UnitZ();
   // On the axis d_rho vanishes where phi is smooth, and d_rho/rho becomes d_rho_rho; beside it the quotient is round-off.
   constexpr double close = 1e-6;  // d_rho/rho - d_rho_rho is of second order in rho
-  const bool on_axis = rho * std::abs(near.bending) < close && std::abs(near.normal.x()) < close && rho < close;
+  const bool on_axis =
+      rho * std::abs(near.bending) < close && std::abs(near.normal.x()) < close && rho < close;
   const double hoop = on_axis     ? near.bending * near.normal.y() * near.normal.y()
                       : rho > 0.0 ? near.normal.x() / rho
                                   : 0.0;

@@ -54,8 +54,9 @@ std::shared_ptr<const ContactShape> hollow_cylinder(double inner_radius, double 
   d.require(inner_radius > 0.0, "inner_radius", inner_radius, "must be > 0");
   d.require(wall > 0.0, "outer_radius", outer_radius, "must be > inner_radius");
   d.require(length > 0.0, "length", length, "must be > 0");
-  d.require(rounding >= 0.0 && 2.0 * rounding <= with_round_off * std::min(wall, length), "rounding", rounding,
-            fmt::format("must be >= 0 and <= {}, half the wall and half the length", 0.5 * std::min(wall, length)));
+  d.require(
+      rounding >= 0.0 && 2.0 * rounding <= with_round_off * std::min(wall, length), "rounding", rounding,
+      fmt::format("must be >= 0 and <= {}, half the wall and half the length", 0.5 * std::min(wall, length)));
   d.raise();
   const double top = 0.5 * length;
   return std::make_shared<RevolvedShape>(
@@ -75,13 +76,14 @@ std::shared_ptr<const ContactShape> cup(const Cup& c) {
             fmt::format("must be >= 0 and <= {}", room));
   d.raise();
   const double outer_radius = c.inner_radius + c.thickness;
-  return std::make_shared<RevolvedShape>(rounded_profile({{0.0, -c.thickness},
-                                                          {outer_radius, -c.thickness},
-                                                          {outer_radius, c.depth},
-                                                          {c.inner_radius, c.depth},
-                                                          {c.inner_radius, 0.0},
-                                                          {0.0, 0.0}},
-                                                         {0.0, c.rounding, c.rounding, c.rounding, c.fillet, 0.0}));
+  return std::make_shared<RevolvedShape>(
+      rounded_profile({{0.0, -c.thickness},
+                       {outer_radius, -c.thickness},
+                       {outer_radius, c.depth},
+                       {c.inner_radius, c.depth},
+                       {c.inner_radius, 0.0},
+                       {0.0, 0.0}},
+                      {0.0, c.rounding, c.rounding, c.rounding, c.fillet, 0.0}));
 }
 
 Profile grapple_profile(const GrappleShaft& s) {

@@ -51,7 +51,8 @@ std::vector<Eigen::Matrix3Xd> Ball::drawing() const {
 }
 
 std::vector<Eigen::Matrix3Xd> HalfSpace::drawing() const {
-  const Eigen::Matrix3Xd side = drawn_ * (Matrix3d() << -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 0.0, 0.0, 0.0).finished();
+  const Eigen::Matrix3Xd side =
+      drawn_ * (Matrix3d() << -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 0.0, 0.0, 0.0).finished();
   return {side, -side};
 }
 
@@ -112,7 +113,8 @@ DistanceField EndlessCylinder::at(const Vector3d& p) const {
 DistanceField Capsule::at(const Vector3d& p) const {
   const double along = std::clamp(p.z(), -half_length_, half_length_);
   const bool between = along == p.z();
-  return distance_along(p - Vector3d(0.0, 0.0, along), Vector3d(1.0, 1.0, between ? 0.0 : 1.0).asDiagonal(), radius_);
+  return distance_along(p - Vector3d(0.0, 0.0, along), Vector3d(1.0, 1.0, between ? 0.0 : 1.0).asDiagonal(),
+                        radius_);
 }
 
 }  // namespace snare::coupling

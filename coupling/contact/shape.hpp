@@ -36,12 +36,15 @@ class ContactShape {
   [[nodiscard]] virtual double smallest_radius() const { return 0.0; }
   /// Where phi has a kink outside that a wire of this radius [m] can reach, as in a concave corner: shapes without, none of which has
   /// pieces, that have the least distance in common wherever it is more than the radius. Empty for any other shape.
-  [[nodiscard]] virtual std::vector<std::shared_ptr<const ContactShape>> pieces(double /*wire_radius*/) const {
+  [[nodiscard]] virtual std::vector<std::shared_ptr<const ContactShape>> pieces(
+      double /*wire_radius*/) const {
     return {};
   }
   /// Whether it is its own mirror image in the plane n.p = offset [m] of its frame, n unit; false where that is not known. It needs to be so to
   /// round-off alone.
-  [[nodiscard]] virtual bool is_mirrored(const Eigen::Vector3d& /*n*/, double /*offset*/) const { return false; }
+  [[nodiscard]] virtual bool is_mirrored(const Eigen::Vector3d& /*n*/, double /*offset*/) const {
+    return false;
+  }
   /// Lines that show the shape, in its frame [m]; of an endless one a cut across it.
   [[nodiscard]] virtual std::vector<Eigen::Matrix3Xd> drawing() const = 0;
 };

@@ -28,7 +28,8 @@ Complex reduced_stiffness(Complex q, double sigma) {
 
 }  // namespace
 
-TensionedStiffness tensioned_stiffness(double bending_stiffness, double tension, double span, double position) {
+TensionedStiffness tensioned_stiffness(double bending_stiffness, double tension, double span,
+                                       double position) {
   const double ei = bending_stiffness;
   const double q = tension * span * span / ei;
   const double sigma = position / span;

@@ -14,7 +14,8 @@ UnionShape::UnionShape(std::vector<std::shared_ptr<const ContactShape>> shapes) 
 std::vector<std::shared_ptr<const ContactShape>> UnionShape::pieces(double wire_radius) const {
   std::vector<std::shared_ptr<const ContactShape>> pieces;
   for (const std::shared_ptr<const ContactShape>& shape : shapes_) {
-    for (std::shared_ptr<const ContactShape>& piece : pieces_of(shape, wire_radius)) pieces.push_back(std::move(piece));
+    for (std::shared_ptr<const ContactShape>& piece : pieces_of(shape, wire_radius))
+      pieces.push_back(std::move(piece));
   }
   return pieces;
 }
@@ -30,13 +31,15 @@ DistanceField UnionShape::at(const Eigen::Vector3d& p) const {
 
 double UnionShape::distance(const Eigen::Vector3d& p) const {
   double least = std::numeric_limits<double>::infinity();
-  for (const std::shared_ptr<const ContactShape>& shape : shapes_) least = std::min(least, shape->distance(p));
+  for (const std::shared_ptr<const ContactShape>& shape : shapes_)
+    least = std::min(least, shape->distance(p));
   return least;
 }
 
 double UnionShape::smallest_radius() const {
   double least = std::numeric_limits<double>::infinity();
-  for (const std::shared_ptr<const ContactShape>& shape : shapes_) least = std::min(least, shape->smallest_radius());
+  for (const std::shared_ptr<const ContactShape>& shape : shapes_)
+    least = std::min(least, shape->smallest_radius());
   return least;
 }
 

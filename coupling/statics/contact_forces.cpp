@@ -17,7 +17,8 @@ double slip_of(const SlidingContact& contact, const VertexTangent& now, double c
          contact.side * contact.radius * angle_between(contact.last_tangent, now.t);
 }
 
-double friction_work(const PushSystem& system, const numerics::PathPoint& before, const numerics::PathPoint& now) {
+double friction_work(const PushSystem& system, const numerics::PathPoint& before,
+                     const numerics::PathPoint& now) {
   const wire::PlanarState state = system.state(now);
   double work = 0.0;
   for (std::size_t k = 0; k < system.sliding.size(); ++k) {
@@ -48,7 +49,8 @@ double friction_work(const PushSystem& system, const numerics::PathPoint& before
   return work;
 }
 
-PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& state, const numerics::PathPoint& at) {
+PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& state,
+                           const numerics::PathPoint& at) {
   const SlidingContact& pusher = system.sliding[0];
   PusherForces sum;
   if (system.wrapped.empty()) {

@@ -17,8 +17,8 @@ double crossing(double f0, double f1) {
 }
 
 // Sticking or sliding of a pin that is pressed. Returns true when the status changed.
-bool settle_friction(SlidingContact& contact, const VertexTangent& v, const Vector2d& force, double coordinate,
-                     const ContactTolerance& tolerance, ContactMemory& memory) {
+bool settle_friction(SlidingContact& contact, const VertexTangent& v, const Vector2d& force,
+                     double coordinate, const ContactTolerance& tolerance, ContactMemory& memory) {
   if (contact.friction == 0.0 || contact.holds_material) return false;
   const PinForce now = resolve(force, v.t, contact.side);
   if (contact.status == ContactStatus::stick) {
@@ -128,9 +128,12 @@ std::vector<PushEvent::Kind> contact_events(const ContactStates& before, const C
     if (was == ContactStatus::open) events.push_back(Kind::touch);
     if (is == ContactStatus::wrapped) events.push_back(Kind::wrap_begins);
     if (was == ContactStatus::wrapped) events.push_back(Kind::wrap_ends);
-    if (frictional && was == ContactStatus::stick && is == ContactStatus::slip) events.push_back(Kind::slip_begins);
-    if (frictional && was == ContactStatus::slip && is == ContactStatus::stick) events.push_back(Kind::slip_ends);
-  } else if (frictional && is == ContactStatus::slip && before.sliding[0].slip_sign != after.sliding[0].slip_sign) {
+    if (frictional && was == ContactStatus::stick && is == ContactStatus::slip)
+      events.push_back(Kind::slip_begins);
+    if (frictional && was == ContactStatus::slip && is == ContactStatus::stick)
+      events.push_back(Kind::slip_ends);
+  } else if (frictional && is == ContactStatus::slip &&
+             before.sliding[0].slip_sign != after.sliding[0].slip_sign) {
     events.push_back(Kind::slip_ends);
     events.push_back(Kind::slip_begins);
   }

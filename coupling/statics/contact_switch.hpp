@@ -31,7 +31,8 @@ class ContactMemory {
 };
 
 /// What changed between two contact states, in words.
-[[nodiscard]] std::vector<PushEvent::Kind> contact_events(const ContactStates& before, const ContactStates& after);
+[[nodiscard]] std::vector<PushEvent::Kind> contact_events(const ContactStates& before,
+                                                          const ContactStates& after);
 
 /// Compares a solution with what its contact states assume (force >= 0, gap >= 0, |T| <= mu N, slip against
 /// the friction, no vertex inside the pusher) and changes the states that are violated.  theory.md (C.9)

@@ -45,7 +45,8 @@ bool reseat_contact(PushSystem& system, numerics::PathPoint& point, numerics::Pa
   const wire::PlanarState state = system.state(point);
   int nearest = 1;
   for (int i = 2; i < system.rod().mesh().edges(); ++i) {
-    if ((wire::vertex(state, i) - centre).norm() < (wire::vertex(state, nearest) - centre).norm()) nearest = i;
+    if ((wire::vertex(state, i) - centre).norm() < (wire::vertex(state, nearest) - centre).norm())
+      nearest = i;
   }
   SlidingContact& pusher = system.sliding[0];
   const SlidingRows rows = system.pusher_rows();
@@ -54,7 +55,8 @@ bool reseat_contact(PushSystem& system, numerics::PathPoint& point, numerics::Pa
   move_contact_vertex(system, point, system.rod().mesh().coordinate(nearest, state.controls));
   const wire::PlanarState moved = system.state(point);
   const VertexTangent v = system.tangent_at(pusher, moved);
-  point.border[rows.gap] = pusher.side * v.normal.dot(wire::vertex(moved, pusher.node) - centre) - pusher.radius;
+  point.border[rows.gap] =
+      pusher.side * v.normal.dot(wire::vertex(moved, pusher.node) - centre) - pusher.radius;
   if (!numerics::correct(system, point, workspace, most_corrections).usable()) return false;
   if (point.border[rows.gap] >= 0.0) return true;
   // Inside the pusher: pressed out.

@@ -10,6 +10,7 @@ void move_contact_vertex(PushSystem& system, numerics::PathPoint& point, double 
 
 /// Puts the contact vertex at the point of the wire nearest to the pusher and opens the contact, or, where
 /// the wire lies inside the pusher, presses it out. False when there is no such equilibrium.
-[[nodiscard]] bool reseat_contact(PushSystem& system, numerics::PathPoint& point, numerics::PathWorkspace& workspace);
+[[nodiscard]] bool reseat_contact(PushSystem& system, numerics::PathPoint& point,
+                                  numerics::PathWorkspace& workspace);
 
 }  // namespace snare::coupling

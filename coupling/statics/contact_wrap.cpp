@@ -43,8 +43,8 @@ bool settle_friction(WrappedContact& contact, const Vector2d& n, const Vector2d&
 }
 
 // The vertices of the arc and its neighbours that are inside the pusher join it, without force.
-Arc with_neighbours(const Arc& kept, const PushSystem& system, const wire::PlanarState& state, const Vector2d& centre,
-                    const ContactTolerance& tolerance, bool& changed) {
+Arc with_neighbours(const Arc& kept, const PushSystem& system, const wire::PlanarState& state,
+                    const Vector2d& centre, const ContactTolerance& tolerance, bool& changed) {
   Arc complete;
   const int first = std::max(1, kept.contacts.front().node - 1);
   const int last = std::min(system.rod().mesh().edges() - 1, kept.contacts.back().node + 1);
@@ -67,7 +67,8 @@ Arc with_neighbours(const Arc& kept, const PushSystem& system, const wire::Plana
 }
 
 // The mounts' unknowns, last in the border, from the old one, where they began at `first`.
-void keep_mounts(const Eigen::VectorXd& old, int first, const PushSystem& system, numerics::PathPoint& point) {
+void keep_mounts(const Eigen::VectorXd& old, int first, const PushSystem& system,
+                 numerics::PathPoint& point) {
   const auto count = static_cast<Eigen::Index>(system.mounts.size());
   point.border.tail(count) = old.segment(first, count);
 }
@@ -119,7 +120,8 @@ ContactTolerance contact_tolerance(const PushSystem& system) {
 
 bool begin_wrap(PushSystem& system, numerics::PathPoint& point, const ContactTolerance& tolerance) {
   SlidingContact& pusher = system.sliding[0];
-  if (pusher.radius <= 0.0 || pusher.node <= 1 || pusher.node >= system.rod().mesh().edges() - 1) return false;
+  if (pusher.radius <= 0.0 || pusher.node <= 1 || pusher.node >= system.rod().mesh().edges() - 1)
+    return false;
   const wire::PlanarState state = system.state(point);
   const Vector2d centre = system.pusher_centre(point);
   const double limit = pusher.radius - tolerance.gap;

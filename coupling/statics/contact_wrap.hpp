@@ -14,11 +14,13 @@ struct ContactTolerance {
 
 /// Where the vertices beside that of a pressed pusher are inside it, these and the contact vertex lie on it
 /// from now on; the point must be solved again. False: the contact stays at a point.  theory.md (C.7)
-[[nodiscard]] bool begin_wrap(PushSystem& system, numerics::PathPoint& point, const ContactTolerance& tolerance);
+[[nodiscard]] bool begin_wrap(PushSystem& system, numerics::PathPoint& point,
+                              const ContactTolerance& tolerance);
 
 /// Compares a solution with what its wrapped contacts assume: releases vertices that are pulled, lets them
 /// stick or slide, takes in neighbours that are inside the pusher; a last vertex is contact at a point again.
 /// True when something changed: the point must be solved again.
-[[nodiscard]] bool settle_wrap(PushSystem& system, numerics::PathPoint& point, const ContactTolerance& tolerance);
+[[nodiscard]] bool settle_wrap(PushSystem& system, numerics::PathPoint& point,
+                               const ContactTolerance& tolerance);
 
 }  // namespace snare::coupling

@@ -12,8 +12,8 @@ namespace {
 wire::SpatialEnd spatial_end(const wire::PlanarEnd& end) {
   wire::SpatialEnd result;
   // A pin of the plane holds the twist: nothing in the plane would.
-  result.kind =
-      end.kind == wire::PlanarEnd::Kind::clamp ? wire::SpatialEnd::Kind::clamp : wire::SpatialEnd::Kind::twisting_pin;
+  result.kind = end.kind == wire::PlanarEnd::Kind::clamp ? wire::SpatialEnd::Kind::clamp
+                                                         : wire::SpatialEnd::Kind::twisting_pin;
   result.position = {end.position.x(), end.position.y(), 0.0};
   result.rotational_stiffness = end.rotational_stiffness;
   result.translational_stiffness = end.translational_stiffness;
@@ -37,7 +37,8 @@ wire::SpatialRod spatial_rod(const wire::PlanarRod& planar, double torsional_sti
   return {planar.mesh(), properties};
 }
 
-int out_of_plane_modes(const wire::PlanarRod& planar, const wire::PlanarState& state, double torsional_stiffness) {
+int out_of_plane_modes(const wire::PlanarRod& planar, const wire::PlanarState& state,
+                       double torsional_stiffness) {
   const wire::SpatialRod rod = spatial_rod(planar, torsional_stiffness);
   const wire::SpatialState s = wire::in_space(rod, state);
   wire::RodAssembly assembly;

@@ -34,7 +34,8 @@ class FollowedPath {
   [[nodiscard]] virtual StepOutcome step_to(double parameter) = 0;
   /// The steps towards `target`, in the parameter's unit, have become too small, `last` is why the last one failed: reaches the target
   /// in another way, or says why the path ends.
-  [[nodiscard]] virtual numerics::SolveReport without_steps(double target, const numerics::SolveReport& last) = 0;
+  [[nodiscard]] virtual numerics::SolveReport without_steps(double target,
+                                                            const numerics::SolveReport& last) = 0;
 };
 
 /// Of which length the next step is the double, or after a failure the half. The two differ by round-off, and at the
@@ -48,7 +49,8 @@ enum class StepMeasure {
 struct StepControl {
   double smallest_step = 1e-9;  ///< of the parameter, in its unit: a failed step is not halved below it
   StepMeasure measure = StepMeasure::attempted;
-  std::function<bool()> stop = {};  ///< asked before every step; true: the path ends here, interrupted. May be empty
+  std::function<bool()> stop =
+      {};  ///< asked before every step; true: the path ends here, interrupted. May be empty
   double largest_step = std::numeric_limits<double>::infinity();  ///< of the parameter, in its unit
 };
 
@@ -90,7 +92,8 @@ class OwnSteps {
   };
   /// Called after each accepted step, with its two ends. back: puts the path to the beginning of the step. The callee
   /// must leave the path in the state in which it found it.
-  using Accepted = std::function<numerics::SolveReport(double from, double to, const std::function<void()>& back)>;
+  using Accepted =
+      std::function<numerics::SolveReport(double from, double to, const std::function<void()>& back)>;
 
   explicit OwnSteps(const Lengths& lengths) : lengths_(lengths), step_(lengths.first) {}
 

@@ -18,7 +18,8 @@ int PlanarPush::count_unstable_modes() {
   int count = workspace_.solver.negative_pivots();
   // Sliding: d2E/dS2 with the wire relaxed and the point of contact held must be positive as well.
   const SlidingContact& pusher = system_.sliding[0];
-  const bool slides = pusher.status == ContactStatus::slip && !pusher.holds_material && pusher.friction == 0.0;
+  const bool slides =
+      pusher.status == ContactStatus::slip && !pusher.holds_material && pusher.friction == 0.0;
   if (slides && system_.sliding.size() == 1 && system_.mounts.empty()) {
     const Eigen::VectorXd& column = system_.rod_assembly().control_columns[1];
     const double stiffness =
@@ -37,7 +38,8 @@ numerics::PathPoint PlanarPush::locate_bifurcation(const numerics::PathPoint& be
   for (int k = 0; k < 24 && std::abs(high.parameter - low.parameter) > options_.smallest_step; ++k) {
     numerics::PathPoint middle{0.5 * (low.band + high.band), 0.5 * (low.border + high.border),
                                0.5 * (low.parameter + high.parameter)};
-    const numerics::SolveReport report = numerics::correct(system_, middle, workspace_, options_.max_iterations);
+    const numerics::SolveReport report =
+        numerics::correct(system_, middle, workspace_, options_.max_iterations);
     iterations_ += report.iterations;
     if (!report.usable()) break;
     (count_unstable_modes() == modes_before ? low : high) = middle;
@@ -90,8 +92,8 @@ StepOutcome PlanarPush::switch_branch(const numerics::PathPoint& beyond) {
   const numerics::PathPoint end = point_;
   const double ahead = 0.05 * (end.parameter - beyond.parameter);
   point_ = {beyond.band, beyond.border, beyond.parameter + ahead};
-  bool left =
-      numerics::correct(system_, point_, workspace_, options_.max_iterations).usable() && leave_unstable_branch();
+  bool left = numerics::correct(system_, point_, workspace_, options_.max_iterations).usable() &&
+              leave_unstable_branch();
   if (!left) {
     point_ = end;
     left = leave_unstable_branch();
@@ -113,7 +115,8 @@ numerics::SolveReport PlanarPush::lift_off(const ContactStates& before) {
 }
 
 bool PlanarPush::is_stable_without_pusher() {
-  const numerics::SolveReport report = numerics::correct(system_, trial_, workspace_, options_.max_iterations);
+  const numerics::SolveReport report =
+      numerics::correct(system_, trial_, workspace_, options_.max_iterations);
   iterations_ += report.iterations;
   if (!report.usable()) return false;
   numerics::BorderedSystem free;
@@ -154,8 +157,9 @@ numerics::SolveReport PlanarPush::snap_free_wire() {
     unstable_ = 0;
     return {};
   }
-  return ended(worst.termination, worst.usable() ? "after the snap no equilibrium was found on this side of the pusher"
-                                                 : "the wire snapped and its new shape was not found");
+  return ended(worst.termination, worst.usable()
+                                      ? "after the snap no equilibrium was found on this side of the pusher"
+                                      : "the wire snapped and its new shape was not found");
 }
 
 // Natural steps have failed: a fold. Follows the path by its length (N.5) until it passes the target in its
@@ -177,8 +181,8 @@ numerics::SolveReport PlanarPush::follow_arc(double target) {
     if (options_.stop && options_.stop()) return interrupted();
     const ContactStates saved = system_.contact_states();
     memory_.begin();
-    numerics::SolveReport report =
-        numerics::correct_along(system_, trial_ = point_, point_, direction, step, workspace_, options_.max_iterations);
+    numerics::SolveReport report = numerics::correct_along(system_, trial_ = point_, point_, direction, step,
+                                                           workspace_, options_.max_iterations);
     iterations_ += report.iterations;
     if (!report.usable()) {
       system_.restore(saved);

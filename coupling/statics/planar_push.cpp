@@ -31,18 +31,19 @@ PlanarPush::PlanarPush(PushSetup setup, const PushProblem& test, const PushOptio
 
 std::function<void()> PlanarPush::checkpoint() {
   const auto memories = sensitivity_ ? sensitivity_->memories() : PushSensitivity::Memories();
-  return [this, memories, point = point_, past = past_, states = system_.contact_states(), unstable = unstable_,
-          dissipated = dissipated_, differentiated_at = differentiated_at_, events = curve_.events.size()] {
-    point_ = point;
-    past_ = past;
-    system_.restore(states);
-    unstable_ = unstable;
-    dissipated_ = dissipated;
-    differentiated_at_ = differentiated_at;
-    if (sensitivity_) sensitivity_->restore(memories);
-    curve_.events.resize(events);
-    assembled_at_.reset();
-  };
+  return
+      [this, memories, point = point_, past = past_, states = system_.contact_states(), unstable = unstable_,
+       dissipated = dissipated_, differentiated_at = differentiated_at_, events = curve_.events.size()] {
+        point_ = point;
+        past_ = past;
+        system_.restore(states);
+        unstable_ = unstable;
+        dissipated_ = dissipated;
+        differentiated_at_ = differentiated_at;
+        if (sensitivity_) sensitivity_->restore(memories);
+        curve_.events.resize(events);
+        assembled_at_.reset();
+      };
 }
 
 // The force on the pusher, the material at the contact, and the places of the mounts that slip.
@@ -57,7 +58,8 @@ RememberingPath::Measures PlanarPush::measures() {
   // A pusher that is apart keeps abreast of some material; which one is of no consequence.
   const bool apart = system_.sliding[0].status == ContactStatus::open;
   m.values[2] = apart ? 0.0 : point_.border[system_.pusher_rows().coordinate];
-  for (Eigen::Index k = 0; k < mounts; ++k) m.values[3 + k] = system_.mounts[static_cast<std::size_t>(k)].last;
+  for (Eigen::Index k = 0; k < mounts; ++k)
+    m.values[3 + k] = system_.mounts[static_cast<std::size_t>(k)].last;
   m.allowed.tail(1 + mounts).setConstant(0.01 * options_.path_tolerance * span_);
   return m;
 }
@@ -68,7 +70,8 @@ numerics::SolveReport PlanarPush::start() {
   iterations_ = setup_.iterations;
   if (sensitivity_) sensitivity_->begin(system_, point_, workspace_);
   SlidingContact& pusher = system_.sliding[0];
-  pusher.status = pusher.friction > 0.0 && !pusher.holds_material ? ContactStatus::stick : ContactStatus::slip;
+  pusher.status =
+      pusher.friction > 0.0 && !pusher.holds_material ? ContactStatus::stick : ContactStatus::slip;
   remember_contact(system_, point_);
   past_.push_back(point_);
   settling_ = true;
@@ -256,7 +259,8 @@ void PlanarPush::differentiate(const numerics::PathPoint& at) {
 // Form of the rates dq/d travel, the contact staying as it is.
 double PlanarPush::viscous_stiffness() {
   if (system_.sliding[0].status == ContactStatus::open) return 0.0;
-  const std::optional<numerics::PathTangent> tangent = numerics::tangent(system_, point_, workspace_, nullptr);
+  const std::optional<numerics::PathTangent> tangent =
+      numerics::tangent(system_, point_, workspace_, nullptr);
   if (!tangent) return 0.0;
   const numerics::PathTangent& along = *tangent;
   const wire::PlanarState now = system_.state(point_);

@@ -22,7 +22,8 @@ class PlanarPush final : public PushPath {
   [[nodiscard]] StepOutcome step_to(double travel) override;
   [[nodiscard]] StepOutcome try_step_to(double travel) override;
   /// Along the path's arc; not with a wrapped wire or a slipping mount, whose states would change on the way.
-  [[nodiscard]] numerics::SolveReport without_steps(double target, const numerics::SolveReport& last) override;
+  [[nodiscard]] numerics::SolveReport without_steps(double target,
+                                                    const numerics::SolveReport& last) override;
   [[nodiscard]] std::function<void()> checkpoint() override;
   [[nodiscard]] Measures measures() override;
 

@@ -38,9 +38,10 @@ struct PushPoint {
   double normal_force = 0.0;      ///< of the pusher on the wire, all contact points together [N], >= 0
   double friction_force = 0.0;    ///< along the wire, the same way [N]; |friction| <= mu normal
   double axial_force = 0.0;       ///< on the pusher along z, where it is tilted [N]
-  double tension_left = 0.0;      ///< axial force in the wire at the left mount, tension positive [N]: theory.md (W.36)
-  double tension_right = 0.0;     ///< at the right mount [N]
-  double largest_tension = 0.0;   ///< along the wire, its ends included, tension positive [N]
+  double tension_left =
+      0.0;  ///< axial force in the wire at the left mount, tension positive [N]: theory.md (W.36)
+  double tension_right = 0.0;    ///< at the right mount [N]
+  double largest_tension = 0.0;  ///< along the wire, its ends included, tension positive [N]
   /// Force of a mount, or of a support, on the wire [N]: along the chord from the left mount to the right one; across it, in
   /// the sense of the bulge; along z, out of their plane. The two, the pusher's force and the weight add up to zero.
   double reaction_along_left = 0.0, reaction_across_left = 0.0, reaction_z_left = 0.0;

@@ -87,7 +87,9 @@ struct Refinement {
   [[nodiscard]] double extrapolated() const {
     return (64.0 * fine - 20.0 * half + quarter) / 45.0;
   }  // theory.md (W.11)
-  [[nodiscard]] double largest_change() const { return std::max(std::abs(fine - half), std::abs(half - quarter)); }
+  [[nodiscard]] double largest_change() const {
+    return std::max(std::abs(fine - half), std::abs(half - quarter));
+  }
   /// Whether the change falls as it does with a power of h between 1 and 5.
   [[nodiscard]] bool in_order() const {
     const double ratio = (fine - half) / (half - quarter);
@@ -217,7 +219,8 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
   }
   if (half.report.usable() && quarter.report.usable()) {
     PushCurve& c = result.curve;
-    c.natural_height = Refinement{c.natural_height, half.natural_height, quarter.natural_height}.extrapolated();
+    c.natural_height =
+        Refinement{c.natural_height, half.natural_height, quarter.natural_height}.extrapolated();
     c.touch_height = Refinement{c.touch_height, half.touch_height, quarter.touch_height}.extrapolated();
   }
 

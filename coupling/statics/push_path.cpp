@@ -41,7 +41,8 @@ bool is_finite(const PushPoint& p) {
 }  // namespace
 
 bool remembers(const PushProblem& test) {
-  return test.pusher.friction > 0.0 || test.mount.slip_tension || test.wire.yielding || test.wire.strand_friction;
+  return test.pusher.friction > 0.0 || test.mount.slip_tension || test.wire.yielding ||
+         test.wire.strand_friction;
 }
 
 numerics::SolveReport PushPath::ended(numerics::Termination termination, const std::string& message) const {
@@ -166,7 +167,8 @@ numerics::SolveReport PushPath::by_own_steps(const std::vector<double>& travel) 
         report = to ? given.advance(*this, *to, between) : own.advance(*this, travel[end - 1], between);
         if (to && *to == parameter()) given.turn();
         // No step leads on: along the arc of the path, if at all.
-        if (!report.usable() && from == parameter() && report.termination != numerics::Termination::interrupted) {
+        if (!report.usable() && from == parameter() &&
+            report.termination != numerics::Termination::interrupted) {
           report = ask(travel[next]);
           ++next;
         }

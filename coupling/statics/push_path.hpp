@@ -40,7 +40,8 @@ class PushPath : public RememberingPath {
   [[nodiscard]] virtual numerics::SolveReport interrupted() const;
 
   /// Why the push ends at the accepted point.
-  [[nodiscard]] numerics::SolveReport ended(numerics::Termination termination, const std::string& message) const;
+  [[nodiscard]] numerics::SolveReport ended(numerics::Termination termination,
+                                            const std::string& message) const;
   [[nodiscard]] numerics::SolveReport follow_to(double target) { return follow(*this, target, control_); }
   void note(PushEvent::Kind kind) { curve_.events.push_back({kind, point_.parameter}); }
   /// Adds a point with the iterations since the one before. One with a number that is none is not added and ends the run.

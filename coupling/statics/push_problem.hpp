@@ -19,7 +19,7 @@ struct PusherSpecification {
   double friction = 0.0;    ///< Coulomb coefficient [-], >= 0
   double compliance = 0.0;  ///< by which the machine gives way along the push [m/N], >= 0
   PushDirection direction = PushDirection::outward;
-  double tilt = 0.0;          ///< the axis leans in the plane of chord and axis, about the push direction [rad]
+  double tilt = 0.0;  ///< the axis leans in the plane of chord and axis, about the push direction [rad]
   double misalignment = 0.0;  ///< the push direction turned in the plane of the wire, towards +x [rad]
 };
 
@@ -44,8 +44,8 @@ struct PushProblem {
   PusherSpecification pusher;
   BulgeSpecification bulge;
   std::array<double, 3> gravity{0.0, 0.0, 0.0};  ///< [m/s^2] in chord axes
-  double contact_position = 0.0;                 ///< of the pusher's axis along the chord, from the left mount [m]
-  std::vector<double> travel;                    ///< of the pusher from first touch, in the order it is visited [m]
+  double contact_position = 0.0;  ///< of the pusher's axis along the chord, from the left mount [m]
+  std::vector<double> travel;     ///< of the pusher from first touch, in the order it is visited [m]
 };
 
 }  // namespace snare::coupling

@@ -20,7 +20,8 @@ Vector2d turned(const Vector2d& v, double angle) {
 
 /// The point moved by a multiple of a change.
 numerics::PathPoint moved(const numerics::PathPoint& at, const numerics::PathPoint& change, double amount) {
-  return {at.band + amount * change.band, at.border + amount * change.border, at.parameter + amount * change.parameter};
+  return {at.band + amount * change.band, at.border + amount * change.border,
+          at.parameter + amount * change.parameter};
 }
 
 /// Positions that the mounts of this rod hold, in the order of the band unknowns; zero elsewhere.
@@ -63,8 +64,8 @@ PushSensitivity::PushSensitivity(const PushProblem& test, const wire::MaterialMe
     varied.held = (held_positions(*plus.rod) - held_positions(*minus.rod)) / twice;
     for (std::size_t k = 0; k < plus.contacts.size(); ++k) {
       varied.centre.emplace_back((plus.contacts[k].centre - minus.contacts[k].centre) / twice);
-      varied.memory.coordinate.push_back((plus.contacts[k].last_coordinate - minus.contacts[k].last_coordinate) /
-                                         twice);
+      varied.memory.coordinate.push_back(
+          (plus.contacts[k].last_coordinate - minus.contacts[k].last_coordinate) / twice);
     }
     varied.memory.angle.assign(plus.contacts.size(), 0.0);
     for (std::size_t k = 0; k < plus.mounts.size(); ++k) {
@@ -104,8 +105,8 @@ wire::Controls PushSensitivity::controls_by(const PushSystem& system, const Vari
 }
 
 // Slips of the system's sections, and the material that they belong to, with the constants of the changed test.
-void PushSensitivity::put_sections(const wire::SectionMemory& sections, const PushSystem& system, const Varied& varied,
-                                   Side& side) const {
+void PushSensitivity::put_sections(const wire::SectionMemory& sections, const PushSystem& system,
+                                   const Varied& varied, Side& side) const {
   const Memory& memory = varied.memory;
   wire::SectionMemory& changed = side.system->sections;
   changed = sections;
@@ -118,7 +119,8 @@ void PushSensitivity::put_sections(const wire::SectionMemory& sections, const Pu
   for (std::size_t k = 0; k < 3; ++k) changed.controls[k] += side.amount * (by[k] + memory.moved[k]);
 }
 
-void PushSensitivity::carry_sections(const wire::SectionMemory& before, const PushSystem& system, double travel) {
+void PushSensitivity::carry_sections(const wire::SectionMemory& before, const PushSystem& system,
+                                     double travel) {
   if (!system.rod().has_memory()) return;
   const double step = travel - system.drift.travel;
   for (Varied& varied : varied_) {
@@ -140,7 +142,8 @@ void PushSensitivity::carry_sections(const wire::SectionMemory& before, const Pu
     }
     const auto rates = [&varied](const std::vector<double>& from, const std::vector<double>& to,
                                  std::vector<double>& rate) {
-      for (std::size_t i = 0; i < rate.size() && i < to.size(); ++i) rate[i] = (to[i] - from[i]) / (2.0 * varied.step);
+      for (std::size_t i = 0; i < rate.size() && i < to.size(); ++i)
+        rate[i] = (to[i] - from[i]) / (2.0 * varied.step);
     };
     rates(carried[0].bending, carried[1].bending, memory.bending);
     rates(carried[0].axial, carried[1].axial, memory.axial);
@@ -166,7 +169,8 @@ void PushSensitivity::put_states(const PushSystem& system, Varied& varied, Side&
   for (WrappedContact& contact : states.wrapped) {
     contact.friction = side.contacts.front().friction;
     const auto known = memory.radial.find(contact.node);
-    if (known != memory.radial.end()) contact.last_radial = turned(contact.last_radial, side.amount * known->second);
+    if (known != memory.radial.end())
+      contact.last_radial = turned(contact.last_radial, side.amount * known->second);
   }
   put_sections(system.sections, system, varied, side);
   for (std::size_t k = 0; k < states.mounts.size(); ++k) {
@@ -192,7 +196,8 @@ numerics::PathPoint PushSensitivity::solve(const PushSystem& system, const numer
   // The differences begin with the change at the point before. A slider that has slipped by less than its memory differs would
   // turn back on one side if the unknowns did not go along.
   const numerics::PathPoint& last = varied.memory.change;
-  if (system.rod().has_memory() && last.band.size() == at.band.size() && last.border.size() == at.border.size()) {
+  if (system.rod().has_memory() && last.band.size() == at.band.size() &&
+      last.border.size() == at.border.size()) {
     const Eigen::Index inner = at.band.size() - 4;
     change.band.segment(2, inner) = last.band.segment(2, inner);
     change.border = last.border;
@@ -211,7 +216,8 @@ numerics::PathPoint PushSensitivity::solve(const PushSystem& system, const numer
   return change;
 }
 
-void PushSensitivity::begin(PushSystem& system, const numerics::PathPoint& at, numerics::PathWorkspace& workspace) {
+void PushSensitivity::begin(PushSystem& system, const numerics::PathPoint& at,
+                            numerics::PathWorkspace& workspace) {
   if (system.sliding.front().status != ContactStatus::touching) {
     force_by_.assign(varied_.size(), 0.0);  // on supports the wire is straight and the centres known
     return;
@@ -229,7 +235,8 @@ void PushSensitivity::begin(PushSystem& system, const numerics::PathPoint& at, n
   }
 }
 
-void PushSensitivity::advance(PushSystem& system, const numerics::PathPoint& at, numerics::PathWorkspace& workspace) {
+void PushSensitivity::advance(PushSystem& system, const numerics::PathPoint& at,
+                              numerics::PathWorkspace& workspace) {
   force_by_.assign(varied_.size(), 0.0);
   if (system.sliding.front().status == ContactStatus::open) return;
   system.assemble(at, workspace.system, workspace.by_parameter);
@@ -240,7 +247,8 @@ void PushSensitivity::advance(PushSystem& system, const numerics::PathPoint& at,
     Varied& varied = varied_[k];
     const numerics::PathPoint change = solve(system, at, workspace, varied);
     const Vector2d by_motion =
-        (varied.sides[1].contacts.front().motion - varied.sides[0].contacts.front().motion) / (2.0 * varied.step);
+        (varied.sides[1].contacts.front().motion - varied.sides[0].contacts.front().motion) /
+        (2.0 * varied.step);
     force_by_[k] = system.pusher_force(change).dot(system.sliding.front().motion) + force.dot(by_motion);
     remember(system, at, change, varied);
   }
@@ -266,9 +274,9 @@ void PushSensitivity::remember(const PushSystem& system, const numerics::PathPoi
   const wire::Controls controls_before = controls_by(system, varied);
   for (std::size_t k = 0; k < system.sliding.size(); ++k) {
     varied.memory.coordinate[k] = change.border[system.sliding_rows(k).coordinate];
-    varied.memory.angle[k] =
-        angle_between(minus.tangent_at(minus.sliding[k], low_state).t, plus.tangent_at(plus.sliding[k], high_state).t) /
-        (2.0 * varied.step);
+    varied.memory.angle[k] = angle_between(minus.tangent_at(minus.sliding[k], low_state).t,
+                                           plus.tangent_at(plus.sliding[k], high_state).t) /
+                             (2.0 * varied.step);
   }
   varied.memory.radial.clear();
   for (const WrappedContact& contact : system.wrapped) {

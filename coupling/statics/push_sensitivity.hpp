@@ -59,7 +59,8 @@ class PushSensitivity {
   void restore(const Memories& memories);
 
   /// The same at first touch, where the wire settles: the travel counts from there and does not change with its zero.
-  void advance_at_touch(PushSystem& system, const numerics::PathPoint& at, numerics::PathWorkspace& workspace);
+  void advance_at_touch(PushSystem& system, const numerics::PathPoint& at,
+                        numerics::PathWorkspace& workspace);
 
   /// d force / d p at the point of the last advance(), one a variation: [N] over the SI unit of its number.
   [[nodiscard]] const std::vector<double>& force_by() const { return force_by_; }

@@ -74,7 +74,8 @@ std::vector<SlidingContact> make_contacts(const PushProblem& test, const wire::M
     support.side = -pusher.side;
     support.friction = test.pusher.friction;
     support.status = support.friction > 0.0 ? ContactStatus::stick : ContactStatus::slip;
-    support.radius = test.mount.support_radius > 0.0 ? test.mount.support_radius + 0.5 * test.wire.diameter : 0.0;
+    support.radius =
+        test.mount.support_radius > 0.0 ? test.mount.support_radius + 0.5 * test.wire.diameter : 0.0;
     support.centre = {end == 0 ? 0.0 : test.mount.span, -support.side * support.radius};
     support.last_coordinate = controls[static_cast<std::size_t>(end)];
     contacts.push_back(support);
@@ -92,7 +93,8 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
     constexpr double strain = 5e-3;  // about where steel wire yields: the highest tension of interest
     const double layer = std::sqrt(ei / (strain * ea));
     const double left = wire::grading_for_layer(layer, fraction * length, mesh.contact_vertex());
-    const double right = wire::grading_for_layer(layer, (1.0 - fraction) * length, edges - mesh.contact_vertex());
+    const double right =
+        wire::grading_for_layer(layer, (1.0 - fraction) * length, edges - mesh.contact_vertex());
     grading = std::max(left, right);
   }
   mesh = wire::make_mesh(edges, fraction, grading);
@@ -103,7 +105,8 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
   if (test.mount.kind == wire::MountKind::supports) {
     if (test.wire.natural_curvature != 0.0) {
       // It would touch the supports in a shape and a roll of its own.
-      setup.report.end(numerics::Termination::step_too_small, "a naturally curved wire on supports is not computed");
+      setup.report.end(numerics::Termination::step_too_small,
+                       "a naturally curved wire on supports is not computed");
       return setup;
     }
     const wire::Controls controls = initial_controls(test);
@@ -129,8 +132,8 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
       const double x1 = wire::vertex(loose.state, i + 1).x();
       if (x0 > test.contact_position || x1 < test.contact_position) continue;
       const double part = (test.contact_position - x0) / (x1 - x0);
-      controls[1] =
-          (1.0 - part) * mesh.coordinate(i, loose.state.controls) + part * mesh.coordinate(i + 1, loose.state.controls);
+      controls[1] = (1.0 - part) * mesh.coordinate(i, loose.state.controls) +
+                    part * mesh.coordinate(i + 1, loose.state.controls);
     }
     loose = wire::find_loose_wire(held, controls, test.bulge.mode);
     setup.iterations += loose.report.iterations;

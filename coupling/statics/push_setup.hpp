@@ -24,7 +24,8 @@ struct PushSetup {
 
 /// The pusher (and the supports) with the constants of the test, not in contact yet: the pusher's axis at the
 /// height of the chord, or on the straight wire that rests on supports.
-[[nodiscard]] std::vector<SlidingContact> make_contacts(const PushProblem& test, const wire::MaterialMesh& mesh,
+[[nodiscard]] std::vector<SlidingContact> make_contacts(const PushProblem& test,
+                                                        const wire::MaterialMesh& mesh,
                                                         const wire::Controls& controls);
 
 /// edges: a multiple of 4, >= 16; coarsening 1, 2 or 4: every, every second or every fourth vertex of that

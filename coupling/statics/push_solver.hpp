@@ -31,6 +31,7 @@ struct ExtrapolatedCurve {
 [[nodiscard]] ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOptions& options);
 
 /// Curve of this mesh alone. `discretisation_error` is that of the path's own steps; the mesh's is not known.
-[[nodiscard]] ExtrapolatedCurve solve_push_with_path_error(const PushProblem& test, const PushOptions& options);
+[[nodiscard]] ExtrapolatedCurve solve_push_with_path_error(const PushProblem& test,
+                                                           const PushOptions& options);
 
 }  // namespace snare::coupling

@@ -76,9 +76,10 @@ void PushSystem::follow_drift(const wire::Controls& controls, double travel) {
 }
 
 void PushSystem::carry_sections(const wire::Controls& to) {
-  const auto carry = [&](std::vector<double>& values, const std::vector<wire::SliderElement>& elements, bool of_edges) {
-    values =
-        wire::carried_over(rod_->mesh(), values, static_cast<int>(elements.size()), of_edges, sections.controls, to);
+  const auto carry = [&](std::vector<double>& values, const std::vector<wire::SliderElement>& elements,
+                         bool of_edges) {
+    values = wire::carried_over(rod_->mesh(), values, static_cast<int>(elements.size()), of_edges,
+                                sections.controls, to);
   };
   carry(sections.bending, rod_->properties().bending_sliders, false);
   carry(sections.axial, rod_->properties().axial_sliders, true);
@@ -91,7 +92,8 @@ wire::PlanarState PushSystem::state(const numerics::PathPoint& at) const {
     result.controls[static_cast<std::size_t>(sliding[k].control)] = at.border[sliding_rows(k).coordinate];
   }
   for (std::size_t k = 0; k < mounts.size(); ++k) {
-    if (mounts[k].feeds()) result.controls[static_cast<std::size_t>(mounts[k].control())] = at.border[mount_row(k)];
+    if (mounts[k].feeds())
+      result.controls[static_cast<std::size_t>(mounts[k].control())] = at.border[mount_row(k)];
   }
   if (!sections.bending.empty() || !sections.axial.empty()) result.memory = &sections;
   return result;
@@ -184,8 +186,9 @@ void PushSystem::add_contacts(const wire::PlanarState& s, const numerics::PathPo
   for (std::size_t k = 0; k < mounts.size(); ++k) assemble_mount(k, at, system);
 }
 
-void PushSystem::assemble_sliding(std::size_t index, const wire::PlanarState& s, const numerics::PathPoint& at,
-                                  numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const {
+void PushSystem::assemble_sliding(std::size_t index, const wire::PlanarState& s,
+                                  const numerics::PathPoint& at, numerics::BorderedSystem& system,
+                                  Eigen::VectorXd& by_parameter) const {
   const SlidingContact& contact = sliding[index];
   const SlidingRows rows = sliding_rows(index);
   const int i = contact.node;
@@ -195,7 +198,8 @@ void PushSystem::assemble_sliding(std::size_t index, const wire::PlanarState& s,
   Eigen::MatrixXd& corner = system.corner;
   Eigen::VectorXd& residual = system.border_residual;
 
-  system.columns.emplace_back(rows.coordinate, &assembly_.control_columns[static_cast<std::size_t>(contact.control)]);
+  system.columns.emplace_back(rows.coordinate,
+                              &assembly_.control_columns[static_cast<std::size_t>(contact.control)]);
   const bool pressed = is_pressed(contact);
   const bool keeps = keeps_from_afar(contact);
   if (pressed || keeps) {
@@ -281,8 +285,8 @@ void PushSystem::assemble_sliding(std::size_t index, const wire::PlanarState& s,
     corner(rows.slip, rows.coordinate) = 1.0;
   } else if (contact.status == ContactStatus::stick) {
     // Rolling: dS + side R d angle = 0.                                                       theory.md (C.5)
-    residual[rows.slip] =
-        coordinate - contact.last_coordinate + contact.side * contact.radius * angle_between(contact.last_tangent, v.t);
+    residual[rows.slip] = coordinate - contact.last_coordinate +
+                          contact.side * contact.radius * angle_between(contact.last_tangent, v.t);
     corner(rows.slip, rows.coordinate) = 1.0;
     add_angle(rows.slip, contact.side * contact.radius);
   } else {
@@ -297,8 +301,9 @@ void PushSystem::assemble_sliding(std::size_t index, const wire::PlanarState& s,
 
 // With n = (x - p)/|x - p| and tau = n turned left: |x - p| - R = 0, and along tau it sticks, R d angle = 0,
 // or slides, f.tau + sign mu f.n = 0.  theory.md (C.7)
-void PushSystem::assemble_wrapped(std::size_t index, const wire::PlanarState& s, const numerics::PathPoint& at,
-                                  numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const {
+void PushSystem::assemble_wrapped(std::size_t index, const wire::PlanarState& s,
+                                  const numerics::PathPoint& at, numerics::BorderedSystem& system,
+                                  Eigen::VectorXd& by_parameter) const {
   const WrappedContact& contact = wrapped[index];
   const SlidingContact& pusher = sliding.front();
   const WrappedRows rows = wrapped_rows(index);
@@ -379,7 +384,8 @@ void PushSystem::assemble_mount(std::size_t index, const numerics::PathPoint& at
   }
   for (std::size_t k = 0; k < mounts.size(); ++k) {
     if (!mounts[k].feeds()) continue;
-    system.corner(row, mount_row(k)) = sense * assembly_.control_hessian(mount.control(), mounts[k].control());
+    system.corner(row, mount_row(k)) =
+        sense * assembly_.control_hessian(mount.control(), mounts[k].control());
   }
   for (std::size_t k = 0; k < sliding.size(); ++k) {
     system.corner(row, sliding_rows(k).coordinate) =
@@ -389,7 +395,8 @@ void PushSystem::assemble_mount(std::size_t index, const numerics::PathPoint& at
 
 double PushSystem::mount_drive(std::size_t k, const numerics::PathPoint& at) const {
   const SlippingMount& mount = mounts[k];
-  return mount.sense() * (mount.feeds() ? assembly_.control_gradient[mount.control()] : -at.border[mount_row(k)]);
+  return mount.sense() *
+         (mount.feeds() ? assembly_.control_gradient[mount.control()] : -at.border[mount_row(k)]);
 }
 
 double PushSystem::mount_place(std::size_t k, const numerics::PathPoint& at) const {
@@ -422,17 +429,18 @@ double PushSystem::error(const numerics::PathPoint& at, const numerics::Bordered
   const Eigen::VectorXd& residual = system.border_residual;
   const Eigen::Index right = 2 * rod_->mesh().edges();
   const Eigen::VectorXd& band = system.band_residual;
-  double error =
-      std::max({std::abs(band[0]) / (force + wire::mount_round_off(p.left.translational_stiffness, length_)),
-                std::abs(band[right]) / (force + wire::mount_round_off(p.right.translational_stiffness, length_)),
-                band.segment(1, right - 1).lpNorm<Eigen::Infinity>() / force, std::abs(band[right + 1]) / force});
+  double error = std::max(
+      {std::abs(band[0]) / (force + wire::mount_round_off(p.left.translational_stiffness, length_)),
+       std::abs(band[right]) / (force + wire::mount_round_off(p.right.translational_stiffness, length_)),
+       band.segment(1, right - 1).lpNorm<Eigen::Infinity>() / force, std::abs(band[right + 1]) / force});
   for (std::size_t k = 0; k < sliding.size(); ++k) {
     const SlidingContact& contact = sliding[k];
     const SlidingRows rows = sliding_rows(k);
     const bool slides = contact.status == ContactStatus::slip && !contact.holds_material;
     const bool apart = contact.status == ContactStatus::open || contact.status == ContactStatus::touching;
     const bool on_arc = contact.status == ContactStatus::wrapped;
-    error = std::max(error, residual.segment<2>(rows.position).lpNorm<Eigen::Infinity>() / (on_arc ? force : position));
+    error = std::max(
+        error, residual.segment<2>(rows.position).lpNorm<Eigen::Infinity>() / (on_arc ? force : position));
     const bool slip_of_force = slides || (apart && !keeps_from_afar(contact));
     error = std::max(error, std::abs(residual[rows.slip]) / (slip_of_force ? force : position));
     error = std::max(error, std::abs(residual[rows.closure]) / (apart ? force : position));

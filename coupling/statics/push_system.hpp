@@ -37,8 +37,8 @@ struct SlippingMount {
 };
 
 /// The mounts that slip, as they begin. friction: at the pusher [-].
-[[nodiscard]] std::vector<SlippingMount> slipping_mounts(const wire::MountSpecification& mount, double friction,
-                                                         const wire::Controls& controls);
+[[nodiscard]] std::vector<SlippingMount> slipping_mounts(const wire::MountSpecification& mount,
+                                                         double friction, const wire::Controls& controls);
 
 /// The material that the vertices stand for, and how fast it changes along the path.
 struct Drift {
@@ -60,7 +60,12 @@ struct ContactStates {
 struct SlidingRows {
   static constexpr int count = 4;
   explicit SlidingRows(int first)
-      : force(first), coordinate(first + 2), gap(first + 3), position(first), slip(first + 2), closure(first + 3) {}
+      : force(first),
+        coordinate(first + 2),
+        gap(first + 3),
+        position(first),
+        slip(first + 2),
+        closure(first + 3) {}
 
   int force;       ///< f_x, f_y: force on the wire [N]
   int coordinate;  ///< S: material coordinate of the vertex [m]
@@ -115,7 +120,9 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   [[nodiscard]] SlidingRows pusher_rows() const { return sliding_rows(0); }
   [[nodiscard]] WrappedRows wrapped_rows(std::size_t contact) const;
   /// Of a mount's unknown, and of its equation; counted as in `mounts`.
-  [[nodiscard]] int mount_row(std::size_t k) const { return wrapped_rows(wrapped.size()).force + static_cast<int>(k); }
+  [[nodiscard]] int mount_row(std::size_t k) const {
+    return wrapped_rows(wrapped.size()).force + static_cast<int>(k);
+  }
   /// Force that drives the mount, > 0 where the wire pulls [N], and S or where it stands [m]; of the last assembly.
   [[nodiscard]] double mount_drive(std::size_t k, const numerics::PathPoint& at) const;
   [[nodiscard]] double mount_place(std::size_t k, const numerics::PathPoint& at) const;
@@ -138,7 +145,8 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   /// Of assemble() the residuals [N], [m] alone; matrices of the system are of no use then.
   void assemble_residual(const numerics::PathPoint& at, numerics::BorderedSystem& system,
                          Eigen::VectorXd& by_parameter);
-  [[nodiscard]] double error(const numerics::PathPoint& at, const numerics::BorderedSystem& system) const override;
+  [[nodiscard]] double error(const numerics::PathPoint& at,
+                             const numerics::BorderedSystem& system) const override;
   [[nodiscard]] double length_scale() const override { return length_; }
 
   /// Reactions of the mounts on the wire at the last assembly: left, right [N].
@@ -147,17 +155,20 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   [[nodiscard]] const wire::RodAssembly& rod_assembly() const { return assembly_; }
 
  private:
-  void add_contacts(const wire::PlanarState& state, const numerics::PathPoint& at, numerics::BorderedSystem& system,
-                    Eigen::VectorXd& by_parameter);
+  void add_contacts(const wire::PlanarState& state, const numerics::PathPoint& at,
+                    numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter);
   void take_reactions(const wire::PlanarState& state, const numerics::PathPoint& at);
   void assemble_sliding(std::size_t index, const wire::PlanarState& state, const numerics::PathPoint& at,
                         numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
   void assemble_wrapped(std::size_t index, const wire::PlanarState& state, const numerics::PathPoint& at,
                         numerics::BorderedSystem& system, Eigen::VectorXd& by_parameter) const;
   void add_compliance(int row, const Eigen::Vector2d& by_centre, numerics::BorderedSystem& system) const;
-  void assemble_mount(std::size_t index, const numerics::PathPoint& at, numerics::BorderedSystem& system) const;
+  void assemble_mount(std::size_t index, const numerics::PathPoint& at,
+                      numerics::BorderedSystem& system) const;
   /// Place in the band of a mount's position along the chord.
-  [[nodiscard]] int band_of(const SlippingMount& mount) const { return mount.right ? 2 * rod_->mesh().edges() : 0; }
+  [[nodiscard]] int band_of(const SlippingMount& mount) const {
+    return mount.right ? 2 * rod_->mesh().edges() : 0;
+  }
 
   const wire::PlanarRod* rod_;
   wire::Controls controls_;

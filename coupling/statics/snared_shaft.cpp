@@ -39,7 +39,8 @@ class HeldWire final : public FollowedPath {
   /// Way of the shaft along the present move [m].
   [[nodiscard]] double parameter() const override { return point_.parameter; }
   [[nodiscard]] StepOutcome step_to(double way) override;
-  [[nodiscard]] numerics::SolveReport without_steps(double /*target*/, const numerics::SolveReport& last) override {
+  [[nodiscard]] numerics::SolveReport without_steps(double /*target*/,
+                                                    const numerics::SolveReport& last) override {
     return last;
   }
 
@@ -142,8 +143,9 @@ ShaftPath move_shaft(const SnareSpecification& snare, const std::vector<Eigen::V
     for (std::size_t i = 0; i < wires.size(); ++i) {
       path.report = wires[i].move(from_wire[i].transpose() * (next - now));
       if (!path.report.usable()) {
-        path.report.message = fmt::format("wire {} on the way to ({:.4g}, {:.4g}, {:.4g}) mm: {}", i + 1,
-                                          1e3 * next.x(), 1e3 * next.y(), 1e3 * next.z(), path.report.message);
+        path.report.message =
+            fmt::format("wire {} on the way to ({:.4g}, {:.4g}, {:.4g}) mm: {}", i + 1, 1e3 * next.x(),
+                        1e3 * next.y(), 1e3 * next.z(), path.report.message);
         return path;
       }
       point.force += from_wire[i] * wires[i].force();

@@ -20,8 +20,9 @@ SpatialPin complete(SpatialPin pin, const PushSetup& planar, const numerics::Pat
 
 }  // namespace
 
-SpatialContact::SpatialContact(const PushSetup& planar, const numerics::PathPoint& at, const wire::SpatialRod& rod,
-                               const SpatialPin& pin, SlidingLength sliding_length)
+SpatialContact::SpatialContact(const PushSetup& planar, const numerics::PathPoint& at,
+                               const wire::SpatialRod& rod, const SpatialPin& pin,
+                               SlidingLength sliding_length)
     : rod_(rod),
       system_(rod_, wire::in_space(rod_, planar.system->state(at)), complete(pin, planar, at)),
       sliding_length_(sliding_length) {
@@ -96,7 +97,8 @@ void SpatialContact::accept(const numerics::PathPoint& point) {
   if (sliding_length_ == SlidingLength::stretched) {
     // g.slip has dS along t for the wire that was fed; the rest of |X'| dS.
     const double fed = point.border[Rows::coordinate] - pin.last_coordinate;
-    slip -= (system_.slope(state).u.norm() - 1.0) * fed * Vector2d(g.tangent.dot(g.across), g.tangent.dot(pin.axis));
+    slip -= (system_.slope(state).u.norm() - 1.0) * fed *
+            Vector2d(g.tangent.dot(g.across), g.tangent.dot(pin.axis));
   }
   // Where the friction has turned round, that at the end of the slip.
   const bool turned = g.friction.dot(last_friction_) <= 0.0;

@@ -74,7 +74,9 @@ class SpatialContact {
 
   /// Whether the wire slides over the pin at the accepted point.
   [[nodiscard]] bool slides() const { return slides_; }
-  [[nodiscard]] double dissipated() const { return dissipated_; }  ///< by friction so far [J], never decreasing
+  [[nodiscard]] double dissipated() const {
+    return dissipated_;
+  }  ///< by friction so far [J], never decreasing
   void forget_dissipation() { dissipated_ = 0.0; }
   /// Negative pivots of the last factorisation: unstable modes.
   [[nodiscard]] int negative_pivots() const { return workspace_.solver.negative_pivots(); }

@@ -31,7 +31,8 @@ class SpatialPush final : public PushPath {
       : PushPath(test, options, StepMeasure::planned), test_(test), coarsening_(coarsening) {}
 
   [[nodiscard]] StepOutcome step_to(double travel) override;
-  [[nodiscard]] numerics::SolveReport without_steps(double /*target*/, const numerics::SolveReport& last) override {
+  [[nodiscard]] numerics::SolveReport without_steps(double /*target*/,
+                                                    const numerics::SolveReport& last) override {
     return ended(last.termination, last.message);
   }
   [[nodiscard]] std::function<void()> checkpoint() override;
@@ -80,7 +81,8 @@ void SpatialPush::accept(const numerics::PathPoint& point) {
   contact_->accept(point);
   assembled_ = true;
   if (contact_->slides() != slid) {
-    curve_.events.push_back({slid ? PushEvent::Kind::slip_ends : PushEvent::Kind::slip_begins, point.parameter});
+    curve_.events.push_back(
+        {slid ? PushEvent::Kind::slip_ends : PushEvent::Kind::slip_begins, point.parameter});
   }
   before_ = point_;
   has_before_ = point_.band.size() > 0 && point.parameter != point_.parameter;
@@ -131,7 +133,8 @@ numerics::SolveReport SpatialPush::seat_in_plane(double seat) {
   SpatialPin pin;
   pin.centre = {flat.centre.x(), flat.centre.y(), 0.0};
   pin.motion = {flat.motion.x(), flat.motion.y(), 0.0};
-  contact_.emplace(setup, at, spatial_rod(*setup.rod, test_.wire.torsional_stiffness()), pin, SlidingLength::material);
+  contact_.emplace(setup, at, spatial_rod(*setup.rod, test_.wire.torsional_stiffness()), pin,
+                   SlidingLength::material);
   point_ = contact_->start();
   point_.parameter = seat;
   return {};
@@ -170,7 +173,8 @@ numerics::SolveReport SpatialPush::leave_plane() {
 // its weight pulls across the plane hangs there. Follows the path down by secants of the force, none of them much longer
 // than the last, and shifts the pin so that travel 0 is where the force is zero.
 numerics::SolveReport SpatialPush::find_first_touch(double seat) {
-  constexpr double left = 0.02;  // share of a secant that is not gone: without force a loose wire swings freely
+  constexpr double left =
+      0.02;  // share of a secant that is not gone: without force a loose wire swings freely
   const double finest = 1e-5 * seat;
   double upper_force = force_along(point_);
   double upper = point_.parameter;
@@ -253,7 +257,8 @@ StepOutcome SpatialPush::step_to(double travel) {
 void SpatialPush::put_mounts(PushPoint& p) const {
   const SpatialPushSystem& system = contact_->system();
   const wire::SpatialState s = system.state(point_);
-  put_end_forces(system.mount_reactions(), wire::end_tangents(contact_->rod(), s), contact_->rod().tensions(s), p);
+  put_end_forces(system.mount_reactions(), wire::end_tangents(contact_->rod(), s),
+                 contact_->rod().tensions(s), p);
 }
 
 // No force at first touch; the rest of the row is that of the unloaded wire.

@@ -12,6 +12,7 @@ namespace snare::coupling {
 /// The push by a tilted pin: like solve_push, for contact at a point between clamps or pins that do not slip.
 /// Without friction a loose wire swings freely about its chord; the path starts where it has swung so that
 /// the pin's force has no moment about the chord.
-[[nodiscard]] PushCurve solve_spatial_push(const PushProblem& test, const PushOptions& options, int coarsening);
+[[nodiscard]] PushCurve solve_spatial_push(const PushProblem& test, const PushOptions& options,
+                                           int coarsening);
 
 }  // namespace snare::coupling

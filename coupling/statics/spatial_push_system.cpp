@@ -22,7 +22,8 @@ constexpr int block = wire::SpatialRod::block;
 
 }  // namespace
 
-SpatialPushSystem::SpatialPushSystem(const wire::SpatialRod& rod, wire::SpatialState accepted, const SpatialPin& pin_)
+SpatialPushSystem::SpatialPushSystem(const wire::SpatialRod& rod, wire::SpatialState accepted,
+                                     const SpatialPin& pin_)
     : pin(pin_),
       rod_(&rod),
       accepted_(std::move(accepted)),
@@ -42,8 +43,9 @@ wire::SpatialState SpatialPushSystem::state(const numerics::PathPoint& at) const
 
 VertexSlope<3> SpatialPushSystem::slope(const wire::SpatialState& s) const {
   const int i = rod_->mesh().contact_vertex();
-  return vertex_slope<3>(wire::vertex(s, i) - wire::vertex(s, i - 1), wire::vertex(s, i + 1) - wire::vertex(s, i),
-                         rod_->mesh().rest_length(i - 1, s.controls), rod_->mesh().rest_length(i, s.controls));
+  return vertex_slope<3>(
+      wire::vertex(s, i) - wire::vertex(s, i - 1), wire::vertex(s, i + 1) - wire::vertex(s, i),
+      rod_->mesh().rest_length(i - 1, s.controls), rod_->mesh().rest_length(i, s.controls));
 }
 
 SpatialPushSystem::Geometry SpatialPushSystem::geometry(const numerics::PathPoint& at,
@@ -54,7 +56,8 @@ SpatialPushSystem::Geometry SpatialPushSystem::geometry(const numerics::PathPoin
   g.normal = pin.side * pin.axis.cross(g.tangent).normalized();
   g.across = g.normal.cross(pin.axis);
   g.zeta = pin.axis.dot(wire::vertex(s, i) - pin.centre - at.parameter * pin.motion);
-  const double turned = std::atan2(pin.axis.dot(pin.last_normal.cross(g.normal)), pin.last_normal.dot(g.normal));
+  const double turned =
+      std::atan2(pin.axis.dot(pin.last_normal.cross(g.normal)), pin.last_normal.dot(g.normal));
   const double fed = at.border[Rows::coordinate] - pin.last_coordinate;
   g.slip = {-pin.radius * turned - g.tangent.dot(g.across) * fed,
             g.zeta - pin.last_zeta - g.tangent.dot(pin.axis) * fed};
@@ -115,13 +118,16 @@ void SpatialPushSystem::assemble(const numerics::PathPoint& at, numerics::Border
       system.rows.push_back({row, block * i + a, (curve.before - curve.after) * factor[a]});
       system.rows.push_back({row, block * (i + 1) + a, curve.after * factor[a]});
     }
-    corner(row, Rows::coordinate) += factor.dot(share_before * curve.by_before + share_after * curve.by_after);
+    corner(row, Rows::coordinate) +=
+        factor.dot(share_before * curve.by_before + share_after * curve.by_after);
   };
 
   // Position across the axis: b.(x - p - (R + g) n) = 0 for two directions b.
-  const Vector3d arm = wire::vertex(s, i) - pin.centre - at.parameter * pin.motion - (pin.radius + gap) * g.normal;
+  const Vector3d arm =
+      wire::vertex(s, i) - pin.centre - at.parameter * pin.motion - (pin.radius + gap) * g.normal;
   const Vector3d sideways = pin.axis.cross(pin.motion);  // none where the pin moves along its axis
-  const Vector3d b0 = sideways.norm() > 1e-3 ? sideways.normalized() : pin.axis.cross(pin.last_normal).normalized();
+  const Vector3d b0 =
+      sideways.norm() > 1e-3 ? sideways.normalized() : pin.axis.cross(pin.last_normal).normalized();
   const std::array<Vector3d, 2> across{b0, pin.axis.cross(b0)};
   for (int k = 0; k < 2; ++k) {
     const Vector3d& b = across[static_cast<std::size_t>(k)];
@@ -199,7 +205,8 @@ double SpatialPushSystem::error(const numerics::PathPoint& at, const numerics::B
     // Rows of the edge angles are moments: a force times the edge is as good as a force.
     double allowed = i % block == block - 1 ? balance * shortest_edge_ : balance;
     if (i == 0) allowed += wire::mount_round_off(p.left.translational_stiffness, length_);
-    if (i == block * rod_->mesh().edges()) allowed += wire::mount_round_off(p.right.translational_stiffness, length_);
+    if (i == block * rod_->mesh().edges())
+      allowed += wire::mount_round_off(p.right.translational_stiffness, length_);
     error = std::max(error, std::abs(system.band_residual[i]) / allowed);
   }
   const bool open = !pin.pressed;

@@ -66,7 +66,8 @@ class SpatialPushSystem final : public numerics::PathProblem {
   /// PathProblem: equilibrium of the rod under f, and the equations in Rows.                    theory.md (C.10), (C.11)
   void assemble(const numerics::PathPoint& at, numerics::BorderedSystem& system,
                 Eigen::VectorXd& by_parameter) override;
-  [[nodiscard]] double error(const numerics::PathPoint& at, const numerics::BorderedSystem& system) const override;
+  [[nodiscard]] double error(const numerics::PathPoint& at,
+                             const numerics::BorderedSystem& system) const override;
   [[nodiscard]] double length_scale() const override { return length_; }
 
   /// Reactions of the mounts on the wire at the last assembly: left, right [N].

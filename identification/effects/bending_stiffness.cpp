@@ -22,11 +22,12 @@ Parameter bending_stiffness() {
 
 /// The bending stiffness is not that of the declared section: a strand, another diameter or modulus.
 Effect bending_stiffness_effect() {
-  return {.name = "bending_stiffness",
-          .channel = Channel::wire,
-          .meaning = "the wire's bending stiffness is not as declared",
-          .numbers = {{bending_stiffness(), 1e-7, 10.0}},
-          .independent_check = "bend a straight piece of the wire between two supports and read its stiffness"};
+  return {
+      .name = "bending_stiffness",
+      .channel = Channel::wire,
+      .meaning = "the wire's bending stiffness is not as declared",
+      .numbers = {{bending_stiffness(), 1e-7, 10.0}},
+      .independent_check = "bend a straight piece of the wire between two supports and read its stiffness"};
 }
 
 }  // namespace snare::identification

@@ -101,7 +101,8 @@ std::vector<const Parameter*> numbers_of_all() {
   const auto place = [](const Parameter* p) {
     return std::find(std::begin(order_in_messages), std::end(order_in_messages), p->key);
   };
-  std::stable_sort(all.begin(), all.end(), [&](const Parameter* a, const Parameter* b) { return place(a) < place(b); });
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const Parameter* a, const Parameter* b) { return place(a) < place(b); });
   return all;
 }
 

@@ -25,11 +25,12 @@ Parameter shift() {
 
 /// The pusher touches elsewhere along the chord than declared, by the same distance in all series: a zero of the slide.
 Effect contact_position_effect() {
-  return {.name = "contact_position",
-          .channel = Channel::geometry,
-          .meaning = "the pusher stands elsewhere along the chord than declared",
-          .numbers = {{shift(), -5.0, 5.0}},
-          .independent_check = "mark where the pusher touches the wire and measure its distance from the mount"};
+  return {
+      .name = "contact_position",
+      .channel = Channel::geometry,
+      .meaning = "the pusher stands elsewhere along the chord than declared",
+      .numbers = {{shift(), -5.0, 5.0}},
+      .independent_check = "mark where the pusher touches the wire and measure its distance from the mount"};
 }
 
 }  // namespace snare::identification

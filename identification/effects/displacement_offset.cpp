@@ -25,7 +25,8 @@ Effect displacement_offset_effect() {
           .channel = Channel::sensor,
           .meaning = "the zero of the travel is not at the first touch",
           .numbers = {{recorded_displacement(), -3.0, 3.0}},
-          .independent_check = "find the first touch electrically or by eye, and begin the record well before it"};
+          .independent_check =
+              "find the first touch electrically or by eye, and begin the record well before it"};
 }
 
 }  // namespace snare::identification

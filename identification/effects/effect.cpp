@@ -40,7 +40,8 @@ std::string needs_times(const std::vector<Series>& series) {
 
 std::string needs_unloading(const std::vector<Series>& series) {
   for (const Series& s : series) {
-    if (s.readings && s.readings->displacement.size() > 1 && legs_of(s.readings->displacement).size() > 1) return "";
+    if (s.readings && s.readings->displacement.size() > 1 && legs_of(s.readings->displacement).size() > 1)
+      return "";
   }
   return "no record turns back";
 }

@@ -17,12 +17,13 @@ Parameter drift() {
 
 /// The recorded force drifts with time, whatever the wire does.
 Effect force_drift_effect() {
-  return {.name = "force_drift",
-          .channel = Channel::sensor,
-          .meaning = "the reading of the load cell drifts with time",
-          .numbers = {{drift(), -10.0, 10.0}},
-          .unobservable = needs_times,
-          .independent_check = "record the load cell without touching the wire, for as long as a series takes"};
+  return {
+      .name = "force_drift",
+      .channel = Channel::sensor,
+      .meaning = "the reading of the load cell drifts with time",
+      .numbers = {{drift(), -10.0, 10.0}},
+      .unobservable = needs_times,
+      .independent_check = "record the load cell without touching the wire, for as long as a series takes"};
 }
 
 }  // namespace snare::identification

@@ -15,14 +15,17 @@ std::array<double, 2> rigid_mounts(const PushProblem& p) {
 
 /// Of each mount along the chord.
 Parameter axial_compliance() {
-  return {
-      .key = "mount_axial_compliance.compliance_m_N",
-      .unit = "m/N",
-      .number = {[](const PushProblem& p, const ReadingModel&) { return compliance(p.mount.translational_stiffness); },
-                 [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.translational_stiffness, v); }},
-      .limits = limits_along_chord,
-      .step = 1e-12,
-      .mounts_give = rigid_mounts};
+  return {.key = "mount_axial_compliance.compliance_m_N",
+          .unit = "m/N",
+          .number = {[](const PushProblem& p, const ReadingModel&) {
+                       return compliance(p.mount.translational_stiffness);
+                     },
+                     [](PushProblem& p, ReadingModel&, double v) {
+                       set_compliance(p.mount.translational_stiffness, v);
+                     }},
+          .limits = limits_along_chord,
+          .step = 1e-12,
+          .mounts_give = rigid_mounts};
 }
 
 }  // namespace

@@ -24,14 +24,15 @@ namespace snare::identification {
 /// Compliance along the chord of the left (0) or the right (1) mount by itself, in series with that of both mounts [m/N].
 template <std::size_t mount>
 [[nodiscard]] Parameter axial_compliance_of() {
-  return {.number = member([](auto& p, auto&) -> auto& { return p.mount.own_translational_compliance[mount]; }),
-          .limits = limits_along_chord,
-          .step = 1e-12,
-          .mounts_give = [](const PushProblem& p) {
-            std::array<double, 2> result{};
-            result[mount] = std::isinf(p.mount.translational_stiffness_of(mount)) ? 1.0 : 0.0;
-            return result;
-          }};
+  return {
+      .number = member([](auto& p, auto&) -> auto& { return p.mount.own_translational_compliance[mount]; }),
+      .limits = limits_along_chord,
+      .step = 1e-12,
+      .mounts_give = [](const PushProblem& p) {
+        std::array<double, 2> result{};
+        result[mount] = std::isinf(p.mount.translational_stiffness_of(mount)) ? 1.0 : 0.0;
+        return result;
+      }};
 }
 
 /// Compliance in rotation of its clamp [rad/(N m)].

@@ -6,12 +6,14 @@ namespace {
 
 /// Of each clamp.
 Parameter rotational_compliance() {
-  return {.key = "mount_rotational_compliance.compliance_rad_Nm",
-          .unit = "rad/(N m)",
-          .number = {[](const PushProblem& p, const ReadingModel&) { return compliance(p.mount.rotational_stiffness); },
-                     [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.rotational_stiffness, v); }},
-          .limits = limits_in_rotation,
-          .step = 1e-6};
+  return {
+      .key = "mount_rotational_compliance.compliance_rad_Nm",
+      .unit = "rad/(N m)",
+      .number = {
+          [](const PushProblem& p, const ReadingModel&) { return compliance(p.mount.rotational_stiffness); },
+          [](PushProblem& p, ReadingModel&, double v) { set_compliance(p.mount.rotational_stiffness, v); }},
+      .limits = limits_in_rotation,
+      .step = 1e-6};
 }
 
 }  // namespace

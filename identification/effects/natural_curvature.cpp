@@ -16,7 +16,8 @@ Parameter natural_curvature() {
 std::string rigid_clamps(const std::vector<Series>& series) {
   for (const Series& s : series) {
     const bool rigid = s.test.mount.kind == wire::MountKind::clamped && !s.test.mount.rotational_stiffness;
-    if (s.test.mount.kind == wire::MountKind::supports) return "a naturally curved wire on supports is not computed";
+    if (s.test.mount.kind == wire::MountKind::supports)
+      return "a naturally curved wire on supports is not computed";
     if (!rigid) return "";
   }
   return "a uniform natural curvature changes nothing between rigid clamps";

@@ -21,7 +21,8 @@ Parameter yield_stress() {
           .unit_size = 1e6,
           .parametrisation = Parametrisation::magnitude,
           .number = {[](const PushProblem& p, const ReadingModel&) {
-                       return p.wire.yielding ? p.wire.yielding->yield_stress : std::numeric_limits<double>::infinity();
+                       return p.wire.yielding ? p.wire.yielding->yield_stress
+                                              : std::numeric_limits<double>::infinity();
                      },
                      [](PushProblem& p, ReadingModel&, double v) {
                        if (!p.wire.yielding) p.wire.yielding = wire::Yielding{};
@@ -35,7 +36,8 @@ Parameter yield_stress() {
 Parameter hardening_ratio() {
   return {.key = "plasticity.hardening_ratio",
           .number = {[](const PushProblem& p, const ReadingModel&) {
-                       return p.wire.yielding ? p.wire.yielding->hardening_ratio : wire::Yielding::usual_hardening;
+                       return p.wire.yielding ? p.wire.yielding->hardening_ratio
+                                              : wire::Yielding::usual_hardening;
                      },
                      [](PushProblem& p, ReadingModel&, double v) {
                        if (p.wire.yielding) p.wire.yielding->hardening_ratio = v;

@@ -93,7 +93,8 @@ Effect strand_hysteresis_effect() {
           .one_sided = true,
           .trials = trial_slips,
           .unobservable = needs_strand,
-          .independent_check = "bend a free piece forth and back and look for a loop in moment against curvature"};
+          .independent_check =
+              "bend a free piece forth and back and look for a loop in moment against curvature"};
 }
 
 }  // namespace snare::identification

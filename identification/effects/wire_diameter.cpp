@@ -14,13 +14,14 @@ const char* diameter_unseen(const PushProblem& p) {
 }
 
 Parameter section_diameter() {
-  return {.key = "wire.diameter_mm",
-          .unit = "mm",
-          .unit_size = base::mm,
-          .number = member([](auto& p, auto&) -> auto& { return p.wire.diameter; }),
-          .limits = [](const PushProblem& p) { return between(0.5 * p.wire.diameter, 1.5 * p.wire.diameter); },
-          .step = 1e-8,
-          .unseen = diameter_unseen};
+  return {
+      .key = "wire.diameter_mm",
+      .unit = "mm",
+      .unit_size = base::mm,
+      .number = member([](auto& p, auto&) -> auto& { return p.wire.diameter; }),
+      .limits = [](const PushProblem& p) { return between(0.5 * p.wire.diameter, 1.5 * p.wire.diameter); },
+      .step = 1e-8,
+      .unseen = diameter_unseen};
 }
 
 std::string needs_a_section(const std::vector<Series>& series) {

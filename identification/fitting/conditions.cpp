@@ -10,9 +10,10 @@ namespace snare::identification {
 namespace {
 
 bool same_test(const coupling::PushProblem& a, const coupling::PushProblem& b) {
-  return a.contact_position == b.contact_position && a.mount.kind == b.mount.kind && a.mount.span == b.mount.span &&
-         a.mount.support_radius == b.mount.support_radius && a.wire.length == b.wire.length &&
-         a.wire.diameter == b.wire.diameter && a.wire.bending_stiffness() == b.wire.bending_stiffness() &&
+  return a.contact_position == b.contact_position && a.mount.kind == b.mount.kind &&
+         a.mount.span == b.mount.span && a.mount.support_radius == b.mount.support_radius &&
+         a.wire.length == b.wire.length && a.wire.diameter == b.wire.diameter &&
+         a.wire.bending_stiffness() == b.wire.bending_stiffness() &&
          a.wire.axial_stiffness() == b.wire.axial_stiffness() && a.pusher.radius == b.pusher.radius &&
          a.pusher.direction == b.pusher.direction && a.pusher.friction == b.pusher.friction;
 }
@@ -57,8 +58,8 @@ std::vector<std::vector<std::size_t>> tests(const std::vector<Series>& series) {
 }
 
 std::vector<std::vector<std::size_t>> conditions(const std::vector<Series>& series) {
-  return groups_of(series,
-                   [](const Series& a, const Series& b) { return same_test(a.test, b.test) && same_speed(a, b); });
+  return groups_of(
+      series, [](const Series& a, const Series& b) { return same_test(a.test, b.test) && same_speed(a, b); });
 }
 
 }  // namespace snare::identification

@@ -43,7 +43,9 @@ const std::vector<Parameter>& construction_numbers() {
        .parametrisation = Parametrisation::ratio,
        .number = member([](auto& p, auto&) -> auto& { return p.wire.youngs_modulus; }),
        .limits =
-           [](const PushProblem& p) { return between(0.01 * p.wire.youngs_modulus, 3.0 * p.wire.youngs_modulus); },
+           [](const PushProblem& p) {
+             return between(0.01 * p.wire.youngs_modulus, 3.0 * p.wire.youngs_modulus);
+           },
        .step = 1e-3,
        .unseen = modulus_unseen},
       {.key = "wire.density_kg_m3",

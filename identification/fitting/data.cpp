@@ -21,7 +21,8 @@ Eigen::Index Data::rows() const {
 }
 
 bool Data::published() const {
-  return !series.empty() && std::ranges::all_of(series, [this](std::size_t k) { return noise.summarised(k); });
+  return !series.empty() &&
+         std::ranges::all_of(series, [this](std::size_t k) { return noise.summarised(k); });
 }
 
 std::vector<Data::Direction> Data::directions() const {
@@ -80,7 +81,8 @@ Eigen::VectorXd Data::residual(const Evaluation& evaluation) const {
 
 Eigen::MatrixXd Data::jacobian(const Evaluation& evaluation) const {
   if (evaluation.by.empty()) return Eigen::MatrixXd::Zero(rows(), 0);
-  Eigen::MatrixXd result = whiten([&](std::size_t k) { return evaluation.by[k]; }, evaluation.by.front().cols());
+  Eigen::MatrixXd result =
+      whiten([&](std::size_t k) { return evaluation.by[k]; }, evaluation.by.front().cols());
   for_published([&](std::size_t k, Eigen::Index row) {
     result.row(row) = noise.published[k]->r_squared_slope(evaluation.force[k], evaluation.by[k]);
   });
@@ -105,7 +107,8 @@ std::vector<Eigen::MatrixXd> Data::placed(const Forces& forces, Eigen::Index col
     const Eigen::RowVectorXd shift = d.placing->sigma / (1.0 + d.square) * (d.white.transpose() * white);
     for (std::size_t i = 0; i < d.placing->series.size(); ++i) {
       const auto at = std::find(series.begin(), series.end(), d.placing->series[i]);
-      if (at != series.end()) result[static_cast<std::size_t>(at - series.begin())] -= d.placing->by[i] * shift;
+      if (at != series.end())
+        result[static_cast<std::size_t>(at - series.begin())] -= d.placing->by[i] * shift;
     }
   }
   return result;
@@ -138,7 +141,8 @@ std::vector<PlaceEstimate> Data::places(const Model& model, const Evaluation& op
   return result;
 }
 
-std::vector<Placing> find_placings(const Model& model, const std::vector<Setting>& settings, const Parameter& place) {
+std::vector<Placing> find_placings(const Model& model, const std::vector<Setting>& settings,
+                                   const Parameter& place) {
   const std::vector<Series>& series = model.series();
   std::vector<Placing> result;
   const Evaluation at = model.evaluate(settings, {&place});

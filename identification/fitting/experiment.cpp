@@ -50,7 +50,8 @@ scenario::PushTables over(const scenario::PushTables& own, const scenario::PushT
 double read_contact_position(const TomlTable& series, double span) {
   const double position = series.number("contact_position_mm", Range::above(0.0, largest_length), mm);
   if (!std::isfinite(position) || !std::isfinite(span)) return position;  // reported already
-  if (const auto problem = scenario::position_problem(position, span)) series.fail("contact_position_mm", *problem);
+  if (const auto problem = scenario::position_problem(position, span))
+    series.fail("contact_position_mm", *problem);
   return position;
 }
 
@@ -79,7 +80,8 @@ std::vector<double> read_path(const TomlTable& series) {
     series.fail("path_mm", "neighbouring turning points must differ");
   const std::size_t total = (turns.size() - 1) * static_cast<std::size_t>(points - 1) + 1;
   if (total > most_travels) {
-    series.fail("points", fmt::format("gives {} points on the path, must give at most {}", total, most_travels));
+    series.fail("points",
+                fmt::format("gives {} points on the path, must give at most {}", total, most_travels));
     return {};
   }
   std::vector<double> result;
@@ -109,7 +111,8 @@ QuadraticLaw read_law(const TomlTable& table) {
   law.r_squared = table.number("R2", Range::above(0.0, 1.0));
   law.to = table.number("to_mm", Range::above(0.0, largest_travel), mm);
   law.r_squared_digits = table.integer_or(
-      "R2_digits", std::max(QuadraticLaw::default_r_squared_digits, decimals_of(law.r_squared)), 1, most_decimals);
+      "R2_digits", std::max(QuadraticLaw::default_r_squared_digits, decimals_of(law.r_squared)), 1,
+      most_decimals);
   return law;
 }
 
@@ -134,13 +137,15 @@ void rename_columns(const TomlTable& series, const base::TomlNode* node, std::ve
   for (const base::TomlEntry& entry : *entries) {
     const std::string meaning = named.text(entry.key);
     if (meaning.empty()) continue;  // reported
-    const auto is = [](const std::string& name) { return [&name](const CsvColumn& c) { return c.meaning == name; }; };
+    const auto is = [](const std::string& name) {
+      return [&name](const CsvColumn& c) { return c.meaning == name; };
+    };
     const auto found = std::ranges::find_if(columns, is(meaning));
     if (found == columns.end()) {
       const bool turned = std::ranges::any_of(columns, is(entry.key));
-      named.fail(entry.key, turned
-                                ? fmt::format("stands the wrong way round: {{ \"{}\" = \"{}\" }}", meaning, entry.key)
-                                : "must be \"displacement_mm\", \"force_N\" or \"time_s\"");
+      named.fail(entry.key,
+                 turned ? fmt::format("stands the wrong way round: {{ \"{}\" = \"{}\" }}", meaning, entry.key)
+                        : "must be \"displacement_mm\", \"force_N\" or \"time_s\"");
     } else if (!taken.insert(meaning).second) {
       named.fail(entry.key, fmt::format("another column is {} already", meaning));
     } else {
@@ -166,7 +171,8 @@ void scale_columns(const TomlTable& series, const base::TomlNode* node, std::vec
       factors.fail(entry.key, fmt::format("must be a column that is read: {}, {} or {}", columns[0].name,
                                           columns[1].name, columns[2].name));
     } else if (!(std::abs(factor) >= 1.0 / largest_scale) || (factor < 0.0 && found->meaning == "time_s")) {
-      if (std::isfinite(factor)) factors.fail(entry.key, found->meaning == "time_s" ? "must be > 0" : "must not be 0");
+      if (std::isfinite(factor))
+        factors.fail(entry.key, found->meaning == "time_s" ? "must be > 0" : "must not be 0");
     } else {
       found->scaled = true;
       found->unit *= factor;
@@ -180,7 +186,8 @@ std::vector<CsvColumn> columns_of_readings(const TomlTable& series, const base::
   std::vector<CsvColumn> columns{
       {"displacement_mm", CsvColumn::Presence::required, Range::from(-largest_travel, largest_travel), mm},
       {"force_N", CsvColumn::Presence::required, Range::from(-largest_force, largest_force)},
-      {"time_s", CsvColumn::Presence::optional, Range::from(-1e12, 1e12), 1.0, CsvColumn::Order::non_decreasing}};
+      {"time_s", CsvColumn::Presence::optional, Range::from(-1e12, 1e12), 1.0,
+       CsvColumn::Order::non_decreasing}};
   for (CsvColumn& column : columns) column.meaning = column.name;
   rename_columns(series, node, columns);
   scale_columns(series, node, columns);
@@ -189,8 +196,8 @@ std::vector<CsvColumn> columns_of_readings(const TomlTable& series, const base::
 
 /// Reads the CSV file of a series. What is wrong inside it is reported at its line; what is wrong with it as
 /// a whole, at the key that names it.
-std::optional<Readings> read_readings(TomlDocument& document, const TomlTable& series, const base::TomlNode* node,
-                                      const std::filesystem::path& folder) {
+std::optional<Readings> read_readings(TomlDocument& document, const TomlTable& series,
+                                      const base::TomlNode* node, const std::filesystem::path& folder) {
   const std::vector<CsvColumn> columns = columns_of_readings(series, node);
   const std::string name = series.text("file");
   if (name.empty()) {
@@ -238,7 +245,8 @@ Source read_source(const TomlTable& table) {
       source = value;
     }
   }
-  if (first == nullptr) table.fail("", "must have one of: file, law, travel_mm with points, path_mm with points");
+  if (first == nullptr)
+    table.fail("", "must have one of: file, law, travel_mm with points, path_mm with points");
   if (source == Source::file && table.has("points")) table.fail("points", "cannot stand beside file");
   for (const char* key : {"columns", "scale"})
     if (source != Source::file && table.has(key)) table.fail(key, "only with file");
@@ -249,14 +257,16 @@ std::string read_name(const TomlTable& table) {
   constexpr std::size_t longest = 64;
   std::string name = table.text("name");
   const auto fits = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
-           c == '.';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.';
   };
   const bool safe = !name.empty() && name.size() <= longest && std::all_of(name.begin(), name.end(), fits) &&
                     name.front() != '.' && name.front() != '-';
   if (table.has("name") && !safe)
-    table.fail("name", fmt::format("must be 1 to {} letters, digits, '_', '-' or '.', the first a letter, digit or '_'",
-                                   longest));
+    table.fail(
+        "name",
+        fmt::format("must be 1 to {} letters, digits, '_', '-' or '.', the first a letter, digit or '_'",
+                    longest));
   return name;
 }
 
@@ -307,8 +317,9 @@ SolverSettings read_solver(const TomlTable& table) {
   solver.elements = table.integer_or("elements", solver.elements, 16, 100'000);
   if (solver.elements % 4 != 0) table.fail("elements", "must be a multiple of 4");
   solver.extrapolate = table.boolean_or("extrapolate", solver.extrapolate);
-  constexpr base::Choice<coupling::Instability> branches[]{{"follow_path", coupling::Instability::follow_path},
-                                                           {"switch_branch", coupling::Instability::switch_branch}};
+  constexpr base::Choice<coupling::Instability> branches[]{
+      {"follow_path", coupling::Instability::follow_path},
+      {"switch_branch", coupling::Instability::switch_branch}};
   if (table.has("instability")) {
     solver.instability = table.choice("instability", branches).value_or(solver.instability);
   }
@@ -316,8 +327,8 @@ SolverSettings read_solver(const TomlTable& table) {
 }
 
 /// Elements of an array of names that must come from a list, each once.
-std::vector<std::string> read_names(const TomlTable& table, std::string_view key, const std::vector<std::string>& known,
-                                    std::string_view what) {
+std::vector<std::string> read_names(const TomlTable& table, std::string_view key,
+                                    const std::vector<std::string>& known, std::string_view what) {
   std::vector<std::string> names = table.texts_or_none(key);
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (std::find(known.begin(), known.end(), names[i]) == known.end()) {
@@ -338,11 +349,12 @@ std::vector<std::string> read_names(const TomlTable& table, std::string_view key
 }
 
 /// A number of its own for every series: series[NAME].KEY in the place of KEY.
-void add_per_series(const TomlTable& fit, const std::vector<std::string>& keys, const std::vector<std::string>& names,
-                    std::vector<std::string>& free) {
+void add_per_series(const TomlTable& fit, const std::vector<std::string>& keys,
+                    const std::vector<std::string>& names, std::vector<std::string>& free) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (std::find(free.begin(), free.end(), keys[i]) != free.end()) {
-      fit.fail_element("per_series", i, "is in free, too: it cannot be one number for all series and one for each");
+      fit.fail_element("per_series", i,
+                       "is in free, too: it cannot be one number for all series and one for each");
       continue;
     }
     for (const std::string& name : names) {
@@ -367,8 +379,8 @@ void note_largest_readings(std::vector<Series>& series) {
 }
 
 /// root_node: the tree of the document, for tables whose keys the user chose.
-Experiment read_document(TomlDocument& document, const base::TomlNode& root_node, const std::filesystem::path& file,
-                         const ParameterSet& parameters) {
+Experiment read_document(TomlDocument& document, const base::TomlNode& root_node,
+                         const std::filesystem::path& file, const ParameterSet& parameters) {
   const TomlTable root = document.root();
   base::require_schema(root, schema);
 
@@ -404,11 +416,13 @@ Experiment read_document(TomlDocument& document, const base::TomlNode& root_node
   constexpr base::Choice<PublishedScatter> scatters[]{{"common", PublishedScatter::common},
                                                       {"each", PublishedScatter::each}};
   if (fit.has("published_scatter")) {
-    experiment.published_scatter = fit.choice("published_scatter", scatters).value_or(experiment.published_scatter);
+    experiment.published_scatter =
+        fit.choice("published_scatter", scatters).value_or(experiment.published_scatter);
   }
   experiment.heldout = read_names(fit, "heldout", names, "the name of a series");
   const std::set<std::string> distinct(experiment.heldout.begin(), experiment.heldout.end());
-  if (!names.empty() && distinct.size() >= names.size()) fit.fail("heldout", "must leave at least one series to fit");
+  if (!names.empty() && distinct.size() >= names.size())
+    fit.fail("heldout", "must leave at least one series to fit");
   document.finish();
   return experiment;
 }
@@ -430,8 +444,8 @@ Experiment read_experiment(const std::filesystem::path& file, const ParameterSet
   return parse_experiment(file, base::read_text(file, TomlDocument::size_limit), parameters, overrides);
 }
 
-Experiment parse_experiment(const std::filesystem::path& file, std::string_view text, const ParameterSet& parameters,
-                            const std::vector<Override>& overrides) {
+Experiment parse_experiment(const std::filesystem::path& file, std::string_view text,
+                            const ParameterSet& parameters, const std::vector<Override>& overrides) {
   base::TomlNode root = base::parse_toml(file.string(), text);
   TomlDocument document(file.string(), root, overrides);
   std::vector<InputProblem> reported;  // by the document

@@ -32,7 +32,9 @@ struct QuadraticLaw {
   static constexpr int default_r_squared_digits = 4;
 
   /// The law's force [N] at a displacement [m].
-  [[nodiscard]] double force(double displacement) const noexcept { return (a * displacement + b) * displacement + c; }
+  [[nodiscard]] double force(double displacement) const noexcept {
+    return (a * displacement + b) * displacement + c;
+  }
   /// Standard deviation of the lost readings about the law that R^2 implies for readings evenly spread
   /// over the range: sqrt((1 - R^2) / R^2 * variance of the law over the range) [N].
   [[nodiscard]] double scatter() const;
@@ -85,6 +87,7 @@ class ParameterSet;
 
 /// The same from text in memory; CSV files are looked for beside `file`, which need not exist.
 [[nodiscard]] Experiment parse_experiment(const std::filesystem::path& file, std::string_view text,
-                                          const ParameterSet& parameters, const std::vector<Override>& overrides = {});
+                                          const ParameterSet& parameters,
+                                          const std::vector<Override>& overrides = {});
 
 }  // namespace snare::identification

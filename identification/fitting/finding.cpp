@@ -9,8 +9,9 @@
 namespace snare::identification {
 
 std::string to_string(FindingKind kind) {
-  static constexpr const char* names[] = {"impossible_stiffness",       "unit_slip",       "sign_turned", "on_bound",
-                                          "series_of_another_specimen", "not_identifiable"};
+  static constexpr const char* names[] = {
+      "impossible_stiffness",       "unit_slip",       "sign_turned", "on_bound",
+      "series_of_another_specimen", "not_identifiable"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -25,8 +26,11 @@ AtBound at_bound(double value, double lower, double upper) {
   return AtBound::none;
 }
 
-std::string interval_words(std::optional<double> lower, std::optional<double> upper, bool identified, AtBound bound) {
-  const auto end = [](std::optional<double> v) { return v ? fmt::format("{:.5g}", *v) : std::string("unbounded"); };
+std::string interval_words(std::optional<double> lower, std::optional<double> upper, bool identified,
+                           AtBound bound) {
+  const auto end = [](std::optional<double> v) {
+    return v ? fmt::format("{:.5g}", *v) : std::string("unbounded");
+  };
   std::string text;
   if (lower || upper) text = fmt::format("[{}, {}]", end(lower), end(upper));
   if (text.empty() && (!identified || bound == AtBound::none)) text = "not determined by the readings";

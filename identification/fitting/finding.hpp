@@ -40,8 +40,8 @@ enum class AtBound { none, lower, upper };
 
 /// The 95 % interval of a fitted number as the command says it: "[1, 2]", "[1, unbounded]", "not determined by the readings",
 /// and the bound on which the number stands. Ends in the number's unit.
-[[nodiscard]] std::string interval_words(std::optional<double> lower, std::optional<double> upper, bool identified,
-                                         AtBound bound);
+[[nodiscard]] std::string interval_words(std::optional<double> lower, std::optional<double> upper,
+                                         bool identified, AtBound bound);
 
 /// A force or a length in another unit than the file says: readings times `factor` are in the file's unit.
 struct UnitSlip {

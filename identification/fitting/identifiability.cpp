@@ -17,9 +17,11 @@ using Eigen::VectorXd;
 
 constexpr double error_margin = 3.0;   // differences by two steps tell the size of an error, not its bound
 constexpr double least_margin = 1e-9;  // rounding of the columns, and of the decomposition
-constexpr double in_doubt = 1e-3;      // error of a direction, in columns of norm 1, from which a null one is checked
-constexpr double near_margin = 300.0;  // the same: below so many errors a direction that is seen is checked, too
-constexpr double weakly_seen = 0.1;    // if its numbers nearly go together
+constexpr double in_doubt =
+    1e-3;  // error of a direction, in columns of norm 1, from which a null one is checked
+constexpr double near_margin =
+    300.0;  // the same: below so many errors a direction that is seen is checked, too
+constexpr double weakly_seen = 0.1;  // if its numbers nearly go together
 
 /// Singular directions of the columns `live`, scaled to norm 1, parted into those that the readings see and null ones.
 struct Parted {
@@ -81,7 +83,8 @@ MatrixXd covariance_beside(const MatrixXd& jacobian, const VectorXd& scale, cons
   const numerics::ThinSvd svd = numerics::thin_svd(jacobian(Eigen::all, free) * own.asDiagonal());
   Index rank = 0;
   while (rank < svd.s.size() && svd.s[rank] > 0.1 * least_margin * svd.s[0]) ++rank;
-  const MatrixXd directions = own.asDiagonal() * svd.V.leftCols(rank) * svd.s.head(rank).cwiseInverse().asDiagonal();
+  const MatrixXd directions =
+      own.asDiagonal() * svd.V.leftCols(rank) * svd.s.head(rank).cwiseInverse().asDiagonal();
   covariance(free, free) = directions * directions.transpose();
   return covariance;
 }
@@ -129,7 +132,8 @@ Identifiability identifiability_of(const MatrixXd& jacobian, const MatrixXd& err
     std::vector<Index> rows;
     reduce(parted.null, rows);
     for (std::size_t j = 0; j < rows.size(); ++j) {
-      NullDirection direction{static_cast<std::size_t>(live[static_cast<std::size_t>(rows[j])]), {}, VectorXd::Zero(n)};
+      NullDirection direction{
+          static_cast<std::size_t>(live[static_cast<std::size_t>(rows[j])]), {}, VectorXd::Zero(n)};
       for (std::size_t i = 0; i < live.size(); ++i) {
         const double moved = parted.null(static_cast<Index>(i), static_cast<Index>(j));
         const auto number = static_cast<std::size_t>(live[i]);
@@ -146,9 +150,10 @@ Identifiability identifiability_of(const MatrixXd& jacobian, const MatrixXd& err
   return result;
 }
 
-void Identifiability::add_direction(std::size_t k, const std::vector<std::size_t>& others, const VectorXd& change,
-                                    const MatrixXd& jacobian) {
-  constexpr double least_correlation = 0.3;  // with k: five standard errors of k move such a number by 1.5 of its own
+void Identifiability::add_direction(std::size_t k, const std::vector<std::size_t>& others,
+                                    const VectorXd& change, const MatrixXd& jacobian) {
+  constexpr double least_correlation =
+      0.3;  // with k: five standard errors of k move such a number by 1.5 of its own
   const auto held_row = static_cast<Index>(k);
   NullDirection direction{k, {}, VectorXd::Zero(change.size())};
   std::vector<bool> held(known.size(), false);
@@ -181,8 +186,9 @@ std::string null_words(const std::vector<NamedChange>& changes) {
     if (relative || shifts)
       amounts.push_back(fmt::format("{:.3g}", c.change));
     else
-      amounts.push_back(c.relative ? fmt::format("{:.3g} %", c.change)
-                                   : fmt::format("{:.3g}{}{}", 0.01 * c.change, c.unit.empty() ? "" : " ", c.unit));
+      amounts.push_back(c.relative
+                            ? fmt::format("{:.3g} %", c.change)
+                            : fmt::format("{:.3g}{}{}", 0.01 * c.change, c.unit.empty() ? "" : " ", c.unit));
   }
   if (relative)
     return fmt::format("{} scale together, in the powers {}: no reading changes", list(keys), list(amounts));

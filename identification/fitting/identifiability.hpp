@@ -11,9 +11,10 @@ namespace snare::identification {
 
 /// A direction in which fitted numbers move while no reading changes.                       theory.md (I.32)
 struct NullDirection {
-  std::size_t held = 0;             ///< index of the number that moves most; with it held the others are known
-  std::vector<std::size_t> others;  ///< indices of the numbers that move with it; empty: no reading depends on `held`
-  Eigen::VectorXd change;           ///< of every number, over that of `held`: in the units of the Jacobian's columns
+  std::size_t held = 0;  ///< index of the number that moves most; with it held the others are known
+  std::vector<std::size_t>
+      others;              ///< indices of the numbers that move with it; empty: no reading depends on `held`
+  Eigen::VectorXd change;  ///< of every number, over that of `held`: in the units of the Jacobian's columns
 };
 
 /// Which fitted numbers, and which combinations of them, the readings determine.             theory.md (I.32)
@@ -49,8 +50,8 @@ inline constexpr double doubtful_change = 5.0;
 /// step sizes (same shape; empty: exact derivatives). check: asked where |E v| > 0.001 (without a check such directions are null) and where
 /// 3 |E v| < |J v| <= 300 |E v|, |J v| < 0.1 (without one these are seen).
 /// A column below its own error is a direction of its own, of which `check` is asked, too.
-[[nodiscard]] Identifiability identifiability_of(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& error,
-                                                 const NullCheck& check = {});
+[[nodiscard]] Identifiability identifiability_of(const Eigen::MatrixXd& jacobian,
+                                                 const Eigen::MatrixXd& error, const NullCheck& check = {});
 
 /// How a number moves along a null direction, for a sentence.
 struct NamedChange {

@@ -67,7 +67,9 @@ class Residuals final : public ceres::CostFunction {
     Eigen::VectorXd at;
     Evaluation evaluation;
     double chi2 = std::numeric_limits<double>::max();
-    [[nodiscard]] bool is_at(const Eigen::VectorXd& other) const { return at.size() == other.size() && at == other; }
+    [[nodiscard]] bool is_at(const Eigen::VectorXd& other) const {
+      return at.size() == other.size() && at == other;
+    }
   };
 
   const Model& model_;
@@ -92,7 +94,8 @@ class Observer final : public ceres::IterationCallback {
     if (!(options_.rival > 0.0) || n <= pace) return ceres::SOLVER_CONTINUE;
     const double fall = (chi2_[n - 1 - pace] - chi2_[n - 1]) / pace;
     const double left = std::min(patience, options_.max_iterations - s.iteration);
-    return chi2_.back() - left * fall > options_.rival ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    return chi2_.back() - left * fall > options_.rival ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                                                       : ceres::SOLVER_CONTINUE;
   }
 
  private:
@@ -105,7 +108,8 @@ class Observer final : public ceres::IterationCallback {
 }  // namespace
 
 double Fit::bic() const {
-  return chi2 + static_cast<double>(free) * std::log(static_cast<double>(std::max<Eigen::Index>(residual.size(), 1)));
+  return chi2 + static_cast<double>(free) *
+                    std::log(static_cast<double>(std::max<Eigen::Index>(residual.size(), 1)));
 }
 
 std::vector<Setting> Fit::fitted() const {
@@ -211,7 +215,8 @@ std::vector<int> kept_by_bounds(const ceres::Problem& problem, const Eigen::Vect
 }
 
 /// What chi2 can fall by, to first order, where the numbers `kept` stay: g^T (J^T J)^-1 g of the others.
-double fall_of_others(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& gradient, const std::vector<int>& kept) {
+double fall_of_others(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& gradient,
+                      const std::vector<int>& kept) {
   std::vector<Eigen::Index> others;
   for (Eigen::Index k = 0; k < gradient.size(); ++k) {
     if (std::find(kept.begin(), kept.end(), k) == kept.end()) others.push_back(k);
@@ -247,8 +252,8 @@ int solve_along_bounds(const FitOptions& options, const Residuals& residuals, Ei
 
 }  // namespace
 
-Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start, const std::vector<Setting>& fixed,
-        const FitOptions& options) {
+Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
+        const std::vector<Setting>& fixed, const FitOptions& options) {
   Fit result;
   result.settings = start;
   result.free = start.size();
@@ -307,9 +312,11 @@ bool stays_along(const Model& model, const Data& data, const Fit& optimum, const
   optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs().maxCoeff(&most);
   const Setting& centre = optimum.settings[static_cast<std::size_t>(most)];
   const double lower = model.lower(*centre.parameter), upper = model.upper(*centre.parameter);
-  const double promised = (optimum.jacobian * direction).norm() / std::abs(direction[most]);  // by a step of one
+  const double promised =
+      (optimum.jacobian * direction).norm() / std::abs(direction[most]);  // by a step of one
   // At most a fifth of the number itself, a tenth of where it may be: far beyond its standard error, were it known.
-  const double far = centre.parameter->parametrisation == Parametrisation::shift ? 0.1 * (upper - lower) : 0.2;
+  const double far =
+      centre.parameter->parametrisation == Parametrisation::shift ? 0.1 * (upper - lower) : 0.2;
   double step = std::min(far, doubtful_change / std::max(promised, 1e-300));
   if (centre.coordinate + step > upper) step = -step;
   if (centre.coordinate + step < lower) return false;
@@ -334,9 +341,11 @@ void find_rank(const Model& model, const Data& data, Fit& fit) {
   if (fit.free == 0 || !fit.report.usable()) return;
   constexpr double twice = 2.0;
   const Evaluation wide = model.evaluate(fit.settings, fit.parameters(), twice);
-  const Eigen::MatrixXd error = wide.complete ? Eigen::MatrixXd(data.jacobian(wide) - fit.jacobian) : Eigen::MatrixXd();
-  fit.rank = identifiability_of(
-      fit.jacobian, error, [&](const Eigen::VectorXd& direction) { return stays_along(model, data, fit, direction); });
+  const Eigen::MatrixXd error =
+      wide.complete ? Eigen::MatrixXd(data.jacobian(wide) - fit.jacobian) : Eigen::MatrixXd();
+  fit.rank = identifiability_of(fit.jacobian, error, [&](const Eigen::VectorXd& direction) {
+    return stays_along(model, data, fit, direction);
+  });
   if (!fit.rank.directions.empty()) fit.covariance = fit.rank.covariance;
 }
 
@@ -351,7 +360,8 @@ std::vector<Setting> others_beside(const Model& model, const Fit& optimum, std::
     if (k == which) continue;
     Setting& s = others.emplace_back(optimum.settings[k]);
     const double slope = optimum.covariance(static_cast<Eigen::Index>(k), j) / (spread * spread);
-    s.coordinate = std::clamp(s.coordinate + step * slope, model.lower(*s.parameter), model.upper(*s.parameter));
+    s.coordinate =
+        std::clamp(s.coordinate + step * slope, model.lower(*s.parameter), model.upper(*s.parameter));
   }
   return others;
 }
@@ -359,7 +369,8 @@ std::vector<Setting> others_beside(const Model& model, const Fit& optimum, std::
 /// chi2 with `held` settings at the optimum of the others, beginning at `others`, by steps with the derivatives of the optimum of all,
 /// which need no new ones: where these come to their end, that is expect no more of another than `enough`.
 std::optional<double> chi2_by_chords(const Model& model, const Data& data, const Eigen::MatrixXd& jacobian,
-                                     std::vector<Setting> others, const std::vector<Setting>& held, double enough,
+                                     std::vector<Setting> others, const std::vector<Setting>& held,
+                                     double enough,
                                      const std::function<bool(int iteration, double chi2)>& progress) {
   constexpr int most = 4;
   const Eigen::MatrixXd covariance = covariance_of(jacobian);
@@ -436,7 +447,8 @@ std::optional<double> profile_end(const Model& model, const Data& data, const Fi
 }  // namespace
 
 ProfileInterval profile_interval(const Model& model, const Data& data, const Fit& optimum, std::size_t which,
-                                 double rise, const std::function<bool(int iteration, double chi2)>& progress) {
+                                 double rise,
+                                 const std::function<bool(int iteration, double chi2)>& progress) {
   const auto j = static_cast<Eigen::Index>(which);
   if (!(optimum.covariance(j, j) > 0.0)) return {};
   return {profile_end(model, data, optimum, which, rise, -1.0, progress),

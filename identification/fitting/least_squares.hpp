@@ -24,7 +24,8 @@ struct Fit {
   double chi2 = 0.0;
   numerics::SolveReport report;
   double noise_dof = std::numeric_limits<double>::infinity();  ///< of the noise by which it is whitened
-  double estimated = 0.0;  ///< standard deviations that are estimated from the same data: those of published fits
+  double estimated =
+      0.0;  ///< standard deviations that are estimated from the same data: those of published fits
   /// Degrees of freedom: whitened numbers less fitted ones and estimated standard deviations, may be negative.
   [[nodiscard]] double dof() const {
     return static_cast<double>(residual.size()) - static_cast<double>(free) - estimated;
@@ -39,9 +40,10 @@ struct Fit {
 /// When a fit ends, and who watches it.
 struct FitOptions {
   int max_iterations = 50;
-  double tolerance = 1e-6;                                   ///< relative fall of chi2 below which the fit ends
+  double tolerance = 1e-6;  ///< relative fall of chi2 below which the fit ends
   std::function<bool(int iteration, double chi2)> progress;  ///< false stops the fit
-  double rival = 0.0;  ///< chi2 to come near to: the fit ends where ten more iterations at its pace would not reach it
+  double rival =
+      0.0;  ///< chi2 to come near to: the fit ends where ten more iterations at its pace would not reach it
 };
 
 /// Weighted least squares by Ceres (Levenberg-Marquardt, bounds), from one start.      theory.md (I.1)
@@ -61,9 +63,9 @@ struct ProfileInterval {
   std::optional<double> upper;
 };
 /// which: of the fitted settings, from 0. rise of chi2 [-], > 0. progress: as in FitOptions; after false both ends may be absent.
-[[nodiscard]] ProfileInterval profile_interval(const Model& model, const Data& data, const Fit& optimum,
-                                               std::size_t which, double rise,
-                                               const std::function<bool(int iteration, double chi2)>& progress = {});
+[[nodiscard]] ProfileInterval profile_interval(
+    const Model& model, const Data& data, const Fit& optimum, std::size_t which, double rise,
+    const std::function<bool(int iteration, double chi2)>& progress = {});
 
 /// Directions D of the coordinates in which the whitened residual changes by one, in columns, D^T J^T J D = 1: by singular values, those below
 /// 1e-10 of the largest (columns of J scaled to one) left out. In the units of the columns' coordinates.

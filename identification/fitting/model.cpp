@@ -12,7 +12,8 @@ namespace snare::identification {
 namespace {
 
 const Setting* find(const std::vector<Setting>& settings, const Parameter* p) {
-  const auto at = std::find_if(settings.begin(), settings.end(), [p](const Setting& s) { return s.parameter == p; });
+  const auto at =
+      std::find_if(settings.begin(), settings.end(), [p](const Setting& s) { return s.parameter == p; });
   return at == settings.end() ? nullptr : &*at;
 }
 
@@ -26,7 +27,8 @@ bool concerns(const Parameter& p, const Series& series) {
 std::vector<std::vector<coupling::PushVariation>> variations_of(const std::vector<Series>& declared,
                                                                 const std::vector<Series>& applied,
                                                                 const std::vector<Setting>& settings,
-                                                                const std::vector<const Parameter*>& by, double widen) {
+                                                                const std::vector<const Parameter*>& by,
+                                                                double widen) {
   std::vector<std::vector<coupling::PushVariation>> variations(declared.size());
   for (const Parameter* number : by) {
     const Parameter& p = *number;
@@ -69,10 +71,12 @@ Eigen::VectorXd record_with(const Series& series, const Prediction& prediction, 
 /// Derivatives of the recorded forces of a series by every number: those of the push from the prediction, whose last column is
 /// the slope of the curve where a number moves the travels; those of the record by differences of the record alone.
 Eigen::MatrixXd record_derivatives(const Series& declared, const Prediction& prediction,
-                                   const std::vector<Setting>& settings, const std::vector<const Parameter*>& by) {
+                                   const std::vector<Setting>& settings,
+                                   const std::vector<const Parameter*>& by) {
   const auto rows = static_cast<Eigen::Index>(prediction.force.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(by.size()));
-  const Eigen::MatrixXd pushed = recorded_change(declared, prediction.reading, prediction.wire, prediction.force_by);
+  const Eigen::MatrixXd pushed =
+      recorded_change(declared, prediction.reading, prediction.wire, prediction.force_by);
   Eigen::Index variation = 0;  // numbers of the push in the order in which they were asked for
   for (std::size_t j = 0; j < by.size(); ++j) {
     auto out = result.col(static_cast<Eigen::Index>(j));
@@ -160,8 +164,9 @@ Model::Applied Model::apply(const std::vector<Setting>& settings) const {
   return result;
 }
 
-std::vector<Prediction> Model::predict_with(const Applied& model, const PredictionOptions& options,
-                                            const std::vector<std::vector<coupling::PushVariation>>& variations) const {
+std::vector<Prediction> Model::predict_with(
+    const Applied& model, const PredictionOptions& options,
+    const std::vector<std::vector<coupling::PushVariation>>& variations) const {
   const std::vector<Series>& series = model.series;
   std::vector<Prediction> predictions(series.size());
   // Records of one push share its curve, where no number belongs to one of them alone.
@@ -191,12 +196,13 @@ Evaluation Model::evaluate(const std::vector<Setting>& given, const std::vector<
                            double widen) const {
   std::vector<Setting> settings = given;
   for (const Parameter* p : by) {
-    if (find(settings, p) == nullptr && p->parametrisation != Parametrisation::magnitude) settings.push_back({p, 0.0});
+    if (find(settings, p) == nullptr && p->parametrisation != Parametrisation::magnitude)
+      settings.push_back({p, 0.0});
   }
   const Applied applied = apply(settings);
   const std::vector<Series>& series = applied.series;
-  const bool implicit =
-      std::all_of(series.begin(), series.end(), [](const Series& s) { return coupling::differentiable(s.test); });
+  const bool implicit = std::all_of(series.begin(), series.end(),
+                                    [](const Series& s) { return coupling::differentiable(s.test); });
 
   PredictionOptions options;
   options.thin = thin_;
@@ -210,7 +216,8 @@ Evaluation Model::evaluate(const std::vector<Setting>& given, const std::vector<
   std::vector<std::vector<coupling::PushVariation>> variations;
   if (implicit && !by.empty()) variations = variations_of(series_, series, settings, of_test, widen);
   if (slope) {
-    for (std::vector<coupling::PushVariation>& of_series : variations) of_series.push_back({nullptr, 1e-7, 1.0});
+    for (std::vector<coupling::PushVariation>& of_series : variations)
+      of_series.push_back({nullptr, 1e-7, 1.0});
   }
   std::vector<Prediction> predictions = predict_with(applied, options, variations);
   Evaluation result = forces_of(series, predictions);
@@ -224,14 +231,14 @@ Evaluation Model::evaluate(const std::vector<Setting>& given, const std::vector<
   return result;
 }
 
-void Model::difference_curves(std::vector<Setting> settings, const std::vector<const Parameter*>& by, double widen,
-                              Evaluation& result) const {
+void Model::difference_curves(std::vector<Setting> settings, const std::vector<const Parameter*>& by,
+                              double widen, Evaluation& result) const {
   PredictionOptions plain;
   plain.thin = thin_;
   for (std::size_t j = 0; j < by.size(); ++j) {
     if (by[j]->derivative != Derivative::push && by[j]->derivative != Derivative::travel) continue;
-    Setting& s =
-        *std::find_if(settings.begin(), settings.end(), [&](const Setting& o) { return o.parameter == by[j]; });
+    Setting& s = *std::find_if(settings.begin(), settings.end(),
+                               [&](const Setting& o) { return o.parameter == by[j]; });
     const double centre = s.coordinate;
     // Wide enough for the jumps of a section that slips vertex by vertex.
     const double h =

@@ -53,8 +53,8 @@ class Model {
   /// Forces [N], and their derivatives by the coordinates of `by` (settings, or further numbers at their declared values).
   /// Implicit differentiation; central differences of whole curves where coupling::differentiable() says no. The steps of the
   /// differences are `widen` times the usual ones, > 0.
-  [[nodiscard]] Evaluation evaluate(const std::vector<Setting>& settings, const std::vector<const Parameter*>& by = {},
-                                    double widen = 1.0) const;
+  [[nodiscard]] Evaluation evaluate(const std::vector<Setting>& settings,
+                                    const std::vector<const Parameter*>& by = {}, double widen = 1.0) const;
 
   /// Derivatives by factors of EI on windows of the wire, one a column: hat functions over `windows` evenly
   /// spread stations of the material between the mounts. Empty where the model is not differentiable.

@@ -20,10 +20,11 @@ namespace snare::identification {
 struct Noise {
   std::vector<double> sigma;  ///< of one reading, its root mean square over the series, one a series [N], > 0
   double smooth = 0.0;        ///< share of the variance that is correlated along the path, in [0, 1)
-  double length = 0.0;        ///< of the correlation along the path [m], > 0 where replicates have a smooth part
-  double readings = 0.0;      ///< correlation length of single records, in readings; 0: independent
-  double dof = std::numeric_limits<double>::infinity();  ///< degrees of freedom of the estimate; infinite: declared
-  std::string source;                                    ///< "declared", "replicates" or "residual"
+  double length = 0.0;    ///< of the correlation along the path [m], > 0 where replicates have a smooth part
+  double readings = 0.0;  ///< correlation length of single records, in readings; 0: independent
+  double dof =
+      std::numeric_limits<double>::infinity();  ///< degrees of freedom of the estimate; infinite: declared
+  std::string source;                           ///< "declared", "replicates" or "residual"
 
   /// One reading of a series in the recursion that whitens: see noise_filter.cpp.
   struct Step {
@@ -36,7 +37,8 @@ struct Noise {
   /// Series of which a fit was published, one a series; none for others. Empty where no series has one.   (I.11)
   std::vector<std::optional<PublishedRows>> published;
   PublishedScatter scatter = PublishedScatter::common;  ///< of published fits
-  double estimated = 0.0;  ///< standard deviations of published fits that are estimated with the fitted numbers
+  double estimated =
+      0.0;  ///< standard deviations of published fits that are estimated with the fitted numbers
 
   /// Whether only a fit was published of a series, so that it has four numbers and no readings.
   [[nodiscard]] bool summarised(std::size_t series) const { return !published.empty() && published[series]; }
@@ -56,8 +58,8 @@ struct Noise {
 
 /// The filter of readings at the coordinates `at`: independent noise of `white` [N], > 0, plus a smooth part of the heights
 /// `height` [N] whose correlation decays over `length`, in the unit of the coordinates.   theory.md (I.3)
-[[nodiscard]] std::vector<Noise::Step> noise_filter(const std::vector<double>& at, double white, double length,
-                                                    const std::vector<double>& height);
+[[nodiscard]] std::vector<Noise::Step> noise_filter(const std::vector<double>& at, double white,
+                                                    double length, const std::vector<double>& height);
 
 /// The noise that the file declares (every series has force_sigma_N or a law); else sigma is empty and none is known
 /// before a fit. Published fits that declare none have the scatter about parabolas, an upper bound, until a fit says more.

@@ -66,8 +66,8 @@ Bessel by_debye(double nu, double z) {
     }
   }
   Bessel result;
-  result.scaled =
-      nu * nu / (r + z) - nu * std::log(0.5 * (nu + r)) - 0.5 * std::log(2.0 * std::numbers::pi * r) + std::log1p(sum);
+  result.scaled = nu * nu / (r + z) - nu * std::log(0.5 * (nu + r)) -
+                  0.5 * std::log(2.0 * std::numbers::pi * r) + std::log1p(sum);
   result.ratio = 1.0 / (r + nu) - 0.5 * q * q - q * q * slope / (1.0 + sum);
   return result;
 }
@@ -160,7 +160,8 @@ double log_noncentral_chi(double t, double components, double mean) {
 
 // The density of t has one peak, near sqrt(k - 1 + m^2), and a standard deviation of at most one; above the peak it falls faster
 // than a normal one. Beyond 9 deviations, or where it has fallen by e^-45 along its slope, nothing counts.
-IntervalProbability length_probability(double lower, double upper, double components, double square, double log_sigma) {
+IntervalProbability length_probability(double lower, double upper, double components, double square,
+                                       double log_sigma) {
   const double sigma = std::exp(log_sigma);
   const double m = std::sqrt(square) / sigma;
   const double log_gamma = boost::math::lgamma(0.5 * components, in_double());

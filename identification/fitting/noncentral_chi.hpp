@@ -15,8 +15,8 @@ struct IntervalProbability {
 /// The logarithm is exact to 1e-6 relative in P, far in the tails as well.
 /// lower, upper: of the length, 0 <= lower < upper, the upper one may be infinite, in the unit of sigma. components: k >= 1.
 /// square: |v|^2 >= 0. log_sigma: log of sigma, finite.
-[[nodiscard]] IntervalProbability length_probability(double lower, double upper, double components, double square,
-                                                     double log_sigma);
+[[nodiscard]] IntervalProbability length_probability(double lower, double upper, double components,
+                                                     double square, double log_sigma);
 
 /// log f(t) [-] of the density above. t > 0, components >= 1, mean = m >= 0.
 [[nodiscard]] double log_noncentral_chi(double t, double components, double mean);

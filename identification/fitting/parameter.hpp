@@ -58,7 +58,7 @@ struct Parameter {
   Parametrisation parametrisation = Parametrisation::shift;
   Access number{};
   Limits (*limits)(const PushProblem&) = nullptr;  ///< admissible values
-  double step = 0.0;                               ///< of the coordinate, for differences of the residual, > 0
+  double step = 0.0;  ///< of the coordinate, for differences of the residual, > 0
   Derivative derivative = Derivative::push;
   bool reports_change = false;  ///< files show the change from the declared value in place of the value
   /// Of a compliance along the chord: 1 for the left and the right mount that is rigid and gives by this number, else 0; rigid

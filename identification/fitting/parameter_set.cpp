@@ -15,7 +15,8 @@ ParameterSet::ParameterSet(std::vector<const Parameter*> all) : all_(std::move(a
 }
 
 const Parameter* ParameterSet::find_common(std::string_view key) const {
-  const auto found = std::find_if(all_.begin(), all_.end(), [key](const Parameter* p) { return p->key == key; });
+  const auto found =
+      std::find_if(all_.begin(), all_.end(), [key](const Parameter* p) { return p->key == key; });
   return found == all_.end() ? nullptr : *found;
 }
 
@@ -25,7 +26,8 @@ const Parameter* ParameterSet::find(std::string_view key) const {
   const std::size_t end = key.find("].");
   if (!key.starts_with(prefix) || end == std::string_view::npos) return nullptr;
   const std::lock_guard lock(guard_);
-  const auto known = std::find_if(own_.begin(), own_.end(), [key](const Parameter& p) { return p.key == key; });
+  const auto known =
+      std::find_if(own_.begin(), own_.end(), [key](const Parameter& p) { return p.key == key; });
   if (known != own_.end()) return &*known;
   const Parameter* of_all = find_common(key.substr(end + 2));
   if (of_all == nullptr) return nullptr;
@@ -37,8 +39,8 @@ const Parameter* ParameterSet::find(std::string_view key) const {
 
 const Parameter& ParameterSet::at(const std::string& key) const {
   if (const Parameter* found = find(key)) return *found;
-  throw base::InputError(
-      {"", 0, "fit.free", fmt::format("\"{}\"", key), fmt::format("must be one of {}", fmt::join(keys_, ", "))});
+  throw base::InputError({"", 0, "fit.free", fmt::format("\"{}\"", key),
+                          fmt::format("must be one of {}", fmt::join(keys_, ", "))});
 }
 
 }  // namespace snare::identification

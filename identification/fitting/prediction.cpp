@@ -125,7 +125,8 @@ Prediction predict(const Series& series, const SolverSettings& solver, const Rea
 }
 
 std::vector<Prediction> predict_all(const std::vector<Series>& series, const SolverSettings& solver,
-                                    const ReadingModel& reading, const std::vector<PredictionOptions>& options) {
+                                    const ReadingModel& reading,
+                                    const std::vector<PredictionOptions>& options) {
   std::vector<Prediction> result(series.size());
   base::parallel_for(series.size(), [&](std::size_t k) {
     result[k] = predict(series[k], solver, reading, options.empty() ? PredictionOptions{} : options[k]);

@@ -20,10 +20,11 @@ struct Prediction {
   coupling::ExtrapolatedCurve curve;  ///< at the travels after first touch, in order
   std::vector<double> force;          ///< recorded force [N], one a displacement that was reached
   TrueForce wire;                     ///< of which it is the record, likewise
-  Eigen::MatrixXd force_by;           ///< d wire.force / d number: a row a displacement, a column a variation asked for
-  std::vector<double> mount_pull;     ///< of the wire on the left mount along the chord, one a displacement [N]
-  ReadingModel reading;               ///< as it was predicted with
-  std::size_t before_touch = 0;       ///< points that lie before first touch: they have no entry in `curve`
+  Eigen::MatrixXd
+      force_by;  ///< d wire.force / d number: a row a displacement, a column a variation asked for
+  std::vector<double> mount_pull;  ///< of the wire on the left mount along the chord, one a displacement [N]
+  ReadingModel reading;            ///< as it was predicted with
+  std::size_t before_touch = 0;    ///< points that lie before first touch: they have no entry in `curve`
 };
 
 /// Predictions of every series of which copies share what they hold: those of a million readings are large.
@@ -66,11 +67,12 @@ struct PredictionOptions {
 
 /// Predicts one series at its displacements. A displacement before first touch reads no force; touch comes
 /// where the displacement first exceeds the offset.
-[[nodiscard]] Prediction predict(const Series& series, const SolverSettings& solver, const ReadingModel& reading = {},
-                                 const PredictionOptions& options = {});
+[[nodiscard]] Prediction predict(const Series& series, const SolverSettings& solver,
+                                 const ReadingModel& reading = {}, const PredictionOptions& options = {});
 
 /// Every series, in parallel; the result does not depend on the number of threads.
-[[nodiscard]] std::vector<Prediction> predict_all(const std::vector<Series>& series, const SolverSettings& solver,
+[[nodiscard]] std::vector<Prediction> predict_all(const std::vector<Series>& series,
+                                                  const SolverSettings& solver,
                                                   const ReadingModel& reading = {},
                                                   const std::vector<PredictionOptions>& options = {});
 

@@ -26,7 +26,8 @@ class Printer {
       const PublishedSeries& one = deviance_.series()[k];
       const LinearCurve& curve = deviance_.curves()[k];
       double sigma = truth.sigma(one, static_cast<Index>(k));
-      if (truth.own.size() > 0 && !one.sigma) sigma = std::exp(truth.log_sigma + scatter_spread * normal_(random));
+      if (truth.own.size() > 0 && !one.sigma)
+        sigma = std::exp(truth.log_sigma + scatter_spread * normal_(random));
       Eigen::Vector3d coefficients = curve.f + curve.A * truth.step;
       for (Index i = 0; i < 3; ++i) coefficients[i] += sigma * normal_(random);
       const double along = (curve.v + curve.V * truth.step).norm() + sigma * normal_(random);
@@ -63,7 +64,8 @@ BootstrapResult published_bootstrap(const PublishedDeviance& deviance, const Poi
   if (deviance.estimates_sigma()) {
     double sum = 0.0;
     for (int k = 0; k < bias_replicates; ++k) {
-      sum += std::exp(2.0 * (deviance.minimise(printer.draw(truth, random), truth).log_sigma - truth.log_sigma));
+      sum +=
+          std::exp(2.0 * (deviance.minimise(printer.draw(truth, random), truth).log_sigma - truth.log_sigma));
     }
     result.bias = sum / bias_replicates;
     truth.log_sigma -= 0.5 * std::log(result.bias);

@@ -16,15 +16,16 @@ using Point = PublishedDeviance::Point;
 
 std::vector<PublishedSeries> published_of(const Model& model, const std::vector<std::size_t>& series) {
   std::vector<PublishedSeries> result = published_series(model.series());
-  std::erase_if(result, [&](const PublishedSeries& s) { return std::ranges::find(series, s.index) == series.end(); });
+  std::erase_if(result,
+                [&](const PublishedSeries& s) { return std::ranges::find(series, s.index) == series.end(); });
   return result;
 }
 
 /// A model with some of its numbers fitted to published fits.
 class PublishedModel {
  public:
-  PublishedModel(const Model& model, std::vector<PublishedSeries> series, const std::vector<Setting>& settings,
-                 std::size_t free, PublishedScatter scatter)
+  PublishedModel(const Model& model, std::vector<PublishedSeries> series,
+                 const std::vector<Setting>& settings, std::size_t free, PublishedScatter scatter)
       : model_(model), series_(std::move(series)), settings_(settings), free_(free), scatter_(scatter) {
     for (std::size_t k = 0; k < free_; ++k) by_.push_back(settings_[k].parameter);
   }
@@ -38,7 +39,8 @@ class PublishedModel {
   [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
 
  private:
-  [[nodiscard]] PublishedDeviance linear(const Evaluation& evaluation, const std::vector<Index>& columns) const;
+  [[nodiscard]] PublishedDeviance linear(const Evaluation& evaluation,
+                                         const std::vector<Index>& columns) const;
   [[nodiscard]] std::vector<Index> all_columns() const;
   [[nodiscard]] bool on_bound(std::size_t k) const;
   [[nodiscard]] std::vector<Setting> moved(const Eigen::VectorXd& step, double share) const;
@@ -55,12 +57,14 @@ class PublishedModel {
   Point at_;  // no steps
 };
 
-PublishedDeviance PublishedModel::linear(const Evaluation& evaluation, const std::vector<Index>& columns) const {
+PublishedDeviance PublishedModel::linear(const Evaluation& evaluation,
+                                         const std::vector<Index>& columns) const {
   std::vector<LinearCurve> curves;
   for (const PublishedSeries& s : series_) {
     const Eigen::VectorXd& force = evaluation.force[s.index];
     Eigen::MatrixXd by(force.size(), static_cast<Index>(columns.size()));
-    for (Index j = 0; j < by.cols(); ++j) by.col(j) = evaluation.by[s.index].col(columns[static_cast<std::size_t>(j)]);
+    for (Index j = 0; j < by.cols(); ++j)
+      by.col(j) = evaluation.by[s.index].col(columns[static_cast<std::size_t>(j)]);
     curves.push_back(linear_curve(s, force, by));
   }
   return {series_, std::move(curves), scatter_};
@@ -151,7 +155,8 @@ Eigen::Matrix3d coefficients_of_basis(const PublishedSeries& series, const std::
   return in_basis.inverse();
 }
 
-FitComparison compare(const PublishedSeries& one, const Series& series, const Eigen::VectorXd& force, double sigma) {
+FitComparison compare(const PublishedSeries& one, const Series& series, const Eigen::VectorXd& force,
+                      double sigma) {
   FitComparison c;
   const Eigen::Matrix3d to_abc = coefficients_of_basis(one, measured_displacement(series));
   const Eigen::Vector3d fitted = one.basis * force;
@@ -202,7 +207,8 @@ SummaryStatistics summary_statistics(const Model& model, const std::vector<std::
   for (std::size_t k = 0; k < published.size(); ++k) {
     const PublishedSeries& one = published[k];
     const double sigma = best.sigma(one, static_cast<Index>(k)) / (one.sigma ? 1.0 : std::sqrt(bias));
-    result.series.push_back(compare(one, model.series()[one.index], fitted.evaluation().force[one.index], sigma));
+    result.series.push_back(
+        compare(one, model.series()[one.index], fitted.evaluation().force[one.index], sigma));
     result.coefficients += result.series.back().chi2;
     squares += sigma * sigma;
   }

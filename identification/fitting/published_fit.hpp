@@ -21,12 +21,13 @@ struct FitComparison {
 
 /// Published fits of all series against the curves that fit them best.                                theory.md (I.11)
 struct SummaryStatistics {
-  double chi2 = 0.0;          ///< deviance of coefficients and R2 [-]; may be negative
-  double coefficients = 0.0;  ///< |Q^T (y - F)|^2 / sigma^2 of all coefficients, by the corrected standard deviation
-  double dof = 0.0;           ///< printed numbers less fitted ones and estimated standard deviations
-  std::size_t numbers = 0;    ///< fitted ones
-  double p = 1.0;             ///< that lost readings of this model give as large a misfit, by a parametric bootstrap
-  double scatter = 0.0;       ///< common standard deviation of a lost reading, its bias corrected [N]
+  double chi2 = 0.0;  ///< deviance of coefficients and R2 [-]; may be negative
+  double coefficients =
+      0.0;           ///< |Q^T (y - F)|^2 / sigma^2 of all coefficients, by the corrected standard deviation
+  double dof = 0.0;  ///< printed numbers less fitted ones and estimated standard deviations
+  std::size_t numbers = 0;  ///< fitted ones
+  double p = 1.0;  ///< that lost readings of this model give as large a misfit, by a parametric bootstrap
+  double scatter = 0.0;               ///< common standard deviation of a lost reading, its bias corrected [N]
   std::vector<Setting> settings;      ///< of greatest likelihood: the fitted ones, then the fixed ones
   std::vector<FitComparison> series;  ///< those with a law, in their order
 };
@@ -41,8 +42,9 @@ inline constexpr double least_bootstrap_p = 1.0 / (published_replicates + 1);
 /// How the published fits of some of a model's series are compared with it.
 struct SummaryOptions {
   PublishedScatter scatter = PublishedScatter::common;
-  int replicates = published_replicates;  ///< of the bootstrap, >= 99; P is a multiple of 1 / (replicates + 1)
-  bool bootstrap = true;                  ///< else p is 1 and the scatter is that of greatest likelihood
+  int replicates =
+      published_replicates;  ///< of the bootstrap, >= 99; P is a multiple of 1 / (replicates + 1)
+  bool bootstrap = true;     ///< else p is 1 and the scatter is that of greatest likelihood
 };
 
 /// Fits the first `free` of `settings` to the published numbers by maximum likelihood, from where they are, and finds

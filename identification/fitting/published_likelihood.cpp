@@ -50,7 +50,8 @@ double middle_squares(const PublishedNumbers& numbers) {
 /// q >= 0 with the greatest probability of a printed R2 [N^2]: log P has one maximum, at zero or where its derivative changes sign.
 double likeliest_square(const PublishedNumbers& numbers, double components, double log_sigma) {
   const auto rises_at = [&](double root) {
-    return length_probability(numbers.lower, numbers.upper, components, root * root, log_sigma).by_square > 0.0;
+    return length_probability(numbers.lower, numbers.upper, components, root * root, log_sigma).by_square >
+           0.0;
   };
   const double length = std::isfinite(numbers.upper) ? numbers.upper : numbers.lower;
   double low = 0.0;
@@ -65,9 +66,10 @@ double likeliest_square(const PublishedNumbers& numbers, double components, doub
 
 /// -2 log likelihood of a parabola of its own for a series, with its own standard deviation unless that is declared.
 double own_parabola(const PublishedSeries& series, const PublishedNumbers& numbers) {
-  const double s = series.sigma
-                       ? std::log(*series.sigma)
-                       : std::log(std::max(std::sqrt(middle_squares(numbers) / series.count), series.least_sigma));
+  const double s =
+      series.sigma
+          ? std::log(*series.sigma)
+          : std::log(std::max(std::sqrt(middle_squares(numbers) / series.count), series.least_sigma));
   return 6.0 * s - 2.0 * length_probability(numbers.lower, numbers.upper, series.count - 3.0, 0.0, s).log;
 }
 
@@ -167,16 +169,19 @@ double PublishedRows::r_squared_residual(const Eigen::VectorXd& force) const {
 }
 
 // r^2 = 2 (max L - L): dr/dq = -L'/r, at the maximum -sqrt(-L'').
-Eigen::RowVectorXd PublishedRows::r_squared_slope(const Eigen::VectorXd& force, const Eigen::MatrixXd& by) const {
+Eigen::RowVectorXd PublishedRows::r_squared_slope(const Eigen::VectorXd& force,
+                                                  const Eigen::MatrixXd& by) const {
   constexpr double near_maximum = 1e-4;
   const Eigen::VectorXd off = off_parabola(force);
   const IntervalProbability at = probability(off.squaredNorm());
   const double r = r_squared_residual(force);
-  const double slope = std::abs(r) > near_maximum ? at.by_square / r : std::sqrt(std::max(0.0, -at.by_square_square));
+  const double slope =
+      std::abs(r) > near_maximum ? at.by_square / r : std::sqrt(std::max(0.0, -at.by_square_square));
   return 2.0 * slope * off.transpose() * by;
 }
 
-LinearCurve linear_curve(const PublishedSeries& series, const Eigen::VectorXd& force, const Eigen::MatrixXd& by) {
+LinearCurve linear_curve(const PublishedSeries& series, const Eigen::VectorXd& force,
+                         const Eigen::MatrixXd& by) {
   LinearCurve curve;
   curve.f = series.basis * force;
   curve.A = series.basis * by;
@@ -265,7 +270,8 @@ PublishedDeviance::Value PublishedDeviance::at(const std::vector<PublishedNumber
     const Eigen::MatrixXd aa = 2.0 * weight * (curve.A.transpose() * curve.A);
     const Eigen::MatrixXd vv = curve.V.transpose() * curve.V;
     value.gradient.head(p) -= 2.0 * weight * ar + 4.0 * l.by_square * vc;
-    value.hessian.topLeftCorner(p, p) += aa - 4.0 * l.by_square * vv - 8.0 * l.by_square_square * vc * vc.transpose();
+    value.hessian.topLeftCorner(p, p) +=
+        aa - 4.0 * l.by_square * vv - 8.0 * l.by_square_square * vc * vc.transpose();
     value.scale.head(p) += aa.diagonal() + 2.0 * weight * vv.diagonal();
     if (one.sigma) continue;
     const double by_s = 6.0 - 2.0 * square - 2.0 * l.by_scale;
@@ -311,7 +317,8 @@ double through_the_parabola(const PublishedSeries& one, const PublishedNumbers& 
   double s = std::max(0.5 * std::log(free), std::log(one.least_sigma));
   double best = -std::numeric_limits<double>::infinity();
   for (int k = 0; k < most; ++k) {
-    const IntervalProbability at = length_probability(numbers.lower, numbers.upper, one.count - 3.0, square, s);
+    const IntervalProbability at =
+        length_probability(numbers.lower, numbers.upper, one.count - 3.0, square, s);
     best = std::max(best, at.log - 3.0 * s);
     const double slope = at.by_scale - 3.0, bend = at.by_scale_scale;
     const double step = bend < 0.0 ? -slope / bend : std::copysign(0.2 * longest, slope);
@@ -335,8 +342,9 @@ double PublishedDeviance::misfit(const std::vector<PublishedNumbers>& numbers, c
       return length_probability(numbers[k].lower, numbers[k].upper, one.count - 3.0, q, s).log;
     };
     const double through =
-        one.sigma ? log_of(likeliest_square(numbers[k], one.count - 3.0, s)) - 3.0 * s
-                  : through_the_parabola(one, numbers[k], std::min(square, curved * middle_squares(numbers[k])));
+        one.sigma
+            ? log_of(likeliest_square(numbers[k], one.count - 3.0, s)) - 3.0 * s
+            : through_the_parabola(one, numbers[k], std::min(square, curved * middle_squares(numbers[k])));
     misfit += 6.0 * s + r.squaredNorm() / (sigma * sigma) - 2.0 * log_of(square) + 2.0 * through;
   }
   return misfit;

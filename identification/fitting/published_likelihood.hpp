@@ -16,7 +16,8 @@ namespace snare::identification {
 [[nodiscard]] Eigen::MatrixXd quadratic_basis(const std::vector<double>& travel);
 
 /// The least-squares fit of A, B, C to readings, as a paper prints it. force: at n >= 4 travels [N]; digits: decimals of R2.
-[[nodiscard]] QuadraticLaw printed_law(const std::vector<double>& travel, const Eigen::VectorXd& force, int digits);
+[[nodiscard]] QuadraticLaw printed_law(const std::vector<double>& travel, const Eigen::VectorXd& force,
+                                       int digits);
 
 /// The numbers that a paper prints of one series, as data: three coefficients and an interval for the sum of squares about
 /// them.                                                                                               theory.md (I.11)
@@ -72,7 +73,8 @@ class PublishedRows {
   /// r_4 [-] of computed forces [N].
   [[nodiscard]] double r_squared_residual(const Eigen::VectorXd& force) const;
   /// -dr_4 by the numbers [1 over the unit of each]. by: derivatives of the forces, a column a number.
-  [[nodiscard]] Eigen::RowVectorXd r_squared_slope(const Eigen::VectorXd& force, const Eigen::MatrixXd& by) const;
+  [[nodiscard]] Eigen::RowVectorXd r_squared_slope(const Eigen::VectorXd& force,
+                                                   const Eigen::MatrixXd& by) const;
 
  private:
   [[nodiscard]] IntervalProbability probability(double square) const;
@@ -102,7 +104,8 @@ struct LinearCurve {
 ///  theory.md (I.11)
 class PublishedDeviance {
  public:
-  PublishedDeviance(std::vector<PublishedSeries> series, std::vector<LinearCurve> curves, PublishedScatter scatter);
+  PublishedDeviance(std::vector<PublishedSeries> series, std::vector<LinearCurve> curves,
+                    PublishedScatter scatter);
 
   /// Steps x, the logarithm s of the common standard deviation, and what each series has beside it.
   struct Point {

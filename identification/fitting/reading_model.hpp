@@ -14,11 +14,13 @@ struct ReadingModel {
   /// Of a Kelvin-Voigt wire, N = EA (e + tau de/dt) and so in bending, to first order in tau [s], >= 0; acts
   /// where the record has times.                                                    theory.md (W.14), (I.2)
   double relaxation_time = 0.0;
-  double travel_bow = 0.0;   ///< b_d, recorded less true travel at half of the largest one, as a share of that [-]
-  double force_bow = 0.0;    ///< b_F, recorded less true force at half of the largest one, as a share of that [-]
-  double lag = 0.0;          ///< by which the record of the force is behind that of the travel [s]
-  double play = 0.0;         ///< of the pusher: travel that is lost where it turns back [m]
-  double creep = 0.0;        ///< c, share of the force by which the reading creeps under load [-]
+  double travel_bow =
+      0.0;  ///< b_d, recorded less true travel at half of the largest one, as a share of that [-]
+  double force_bow =
+      0.0;             ///< b_F, recorded less true force at half of the largest one, as a share of that [-]
+  double lag = 0.0;    ///< by which the record of the force is behind that of the travel [s]
+  double play = 0.0;   ///< of the pusher: travel that is lost where it turns back [m]
+  double creep = 0.0;  ///< c, share of the force by which the reading creeps under load [-]
   double creep_time = 30.0;  ///< within which it does [s], > 0
   double drift = 0.0;        ///< of the recorded force [N/s], from the beginning of a series
 };

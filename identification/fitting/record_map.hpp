@@ -29,7 +29,7 @@ struct TrueForce {
                                                  const TrueForce& wire);
 
 /// Change of the recorded forces by changes of the true ones, to first order: columns [N] of one row a reading.
-[[nodiscard]] Eigen::MatrixXd recorded_change(const Series& series, const ReadingModel& reading, const TrueForce& wire,
-                                              Eigen::MatrixXd change);
+[[nodiscard]] Eigen::MatrixXd recorded_change(const Series& series, const ReadingModel& reading,
+                                              const TrueForce& wire, Eigen::MatrixXd change);
 
 }  // namespace snare::identification

@@ -32,7 +32,8 @@ struct Sums {
 
 Sums sums_of(const std::vector<double>& d, const Leg& leg, double from, double to, std::size_t cells,
              const Eigen::VectorXd& residual, const Eigen::VectorXd& computed) {
-  Sums sums{std::vector<double>(cells, 0.0), std::vector<double>(cells, 0.0), std::vector<double>(cells, 0.0)};
+  Sums sums{std::vector<double>(cells, 0.0), std::vector<double>(cells, 0.0),
+            std::vector<double>(cells, 0.0)};
   for (std::size_t i = leg.begin; i < leg.end; ++i) {
     const double u = (d[i] - from) / (to - from);
     if (!(u >= 0.0 && u <= 1.0)) continue;
@@ -133,8 +134,8 @@ Spectrum spectrum_of(const Cells& cells, double length, double part) {
   Eigen::MatrixXd m(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) {
-      m(i, j) =
-          scale[i] * scale[j] * height[i] * height[j] * std::exp(-std::abs(cells.path[i] - cells.path[j]) / length);
+      m(i, j) = scale[i] * scale[j] * height[i] * height[j] *
+                std::exp(-std::abs(cells.path[i] - cells.path[j]) / length);
     }
   }
   const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(m);

@@ -36,7 +36,8 @@ std::vector<Noise::Step> serial_filter(const Series& series, double smooth, doub
 
 }  // namespace
 
-WhitenedRows without_correlation(const Series& series, double smooth, double length, const Eigen::MatrixXd& rows) {
+WhitenedRows without_correlation(const Series& series, double smooth, double length,
+                                 const Eigen::MatrixXd& rows) {
   Noise one;
   one.filter.push_back(serial_filter(series, smooth, length, 1.0));
   WhitenedRows white;
@@ -140,7 +141,8 @@ double effective_readings(double n, double smooth, double length) {
 }  // namespace
 
 std::optional<SerialNoise> serial_noise(const Model& model, const Data& data, const Fit& fit) {
-  if (data.published() || !data.noise.published.empty() || !data.noise.filter.empty() || !data.placings.empty())
+  if (data.published() || !data.noise.published.empty() || !data.noise.filter.empty() ||
+      !data.placings.empty())
     return std::nullopt;
   const SerialRows rows = serial_rows(model, data, fit);
   constexpr Eigen::Index fewest = 8;  // more than fitted numbers

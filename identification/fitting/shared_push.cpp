@@ -28,19 +28,19 @@ bool equal(const std::optional<T>& a, const std::optional<T>& b) {
 
 bool equal(const wire::WireSpecification& a, const wire::WireSpecification& b) {
   const auto plain = [](const wire::WireSpecification& w) {
-    const auto& [construction, diameter, length, modulus, poisson, density, bending, axial, torsional, natural, strands,
-                 yielding, profile] = w;
-    return std::tuple(construction, diameter, length, modulus, poisson, density, bending, axial, torsional, natural,
-                      profile);
+    const auto& [construction, diameter, length, modulus, poisson, density, bending, axial, torsional,
+                 natural, strands, yielding, profile] = w;
+    return std::tuple(construction, diameter, length, modulus, poisson, density, bending, axial, torsional,
+                      natural, profile);
   };
   return plain(a) == plain(b) && equal(a.strand_friction, b.strand_friction) && equal(a.yielding, b.yielding);
 }
 
 auto members(const wire::MountSpecification& m) {
-  const auto& [kind, span, radius, translational, rotational, own_translational, own_rotational, slip_tension, slip,
-               slip_at] = m;
-  return std::tuple(kind, span, radius, translational, rotational, own_translational, own_rotational, slip_tension,
-                    slip, slip_at);
+  const auto& [kind, span, radius, translational, rotational, own_translational, own_rotational, slip_tension,
+               slip, slip_at] = m;
+  return std::tuple(kind, span, radius, translational, rotational, own_translational, own_rotational,
+                    slip_tension, slip, slip_at);
 }
 
 auto members(const coupling::PusherSpecification& p) {
@@ -60,8 +60,10 @@ bool same_push(const PushProblem& a, const PushProblem& b) {
 }
 
 auto members(const ReadingModel& r) {
-  const auto& [displacement, force, gain, relaxation, travel_bow, force_bow, lag, play, creep, creep_time, drift] = r;
-  return std::tuple(displacement, force, gain, relaxation, travel_bow, force_bow, lag, play, creep, creep_time, drift);
+  const auto& [displacement, force, gain, relaxation, travel_bow, force_bow, lag, play, creep, creep_time,
+               drift] = r;
+  return std::tuple(displacement, force, gain, relaxation, travel_bow, force_bow, lag, play, creep,
+                    creep_time, drift);
 }
 
 /// A dense record of one loading: the curve is that of any other, whatever its readings.

@@ -9,7 +9,8 @@ namespace {
 
 constexpr const char* in_torsion = "it acts in torsion, which a push in the plane of the wire does not cause";
 constexpr const char* of_errors = "it describes errors of the readings: no computed force depends on it";
-constexpr const char* of_places = "it says where forces are computed: no force at a given travel depends on it";
+constexpr const char* of_places =
+    "it says where forces are computed: no force at a given travel depends on it";
 constexpr const char* of_fit = "it is what the model is fitted to";
 constexpr const char* of_method = "it is a setting of the computation, not of the test";
 
@@ -40,9 +41,12 @@ constexpr Reason reasons[] = {
     {"mount.translational_stiffness_N_m", "fit mount_axial_compliance.compliance_m_N in its place"},
     {"mount.rotational_stiffness_Nm_rad", "fit mount_rotational_compliance.compliance_rad_Nm in its place"},
     {"mount.translational_stiffness_left_N_m", "fit mount_axial_compliance_left.compliance_m_N in its place"},
-    {"mount.translational_stiffness_right_N_m", "fit mount_axial_compliance_right.compliance_m_N in its place"},
-    {"mount.rotational_stiffness_left_Nm_rad", "fit mount_rotational_compliance_left.compliance_rad_Nm in its place"},
-    {"mount.rotational_stiffness_right_Nm_rad", "fit mount_rotational_compliance_right.compliance_rad_Nm in its place"},
+    {"mount.translational_stiffness_right_N_m",
+     "fit mount_axial_compliance_right.compliance_m_N in its place"},
+    {"mount.rotational_stiffness_left_Nm_rad",
+     "fit mount_rotational_compliance_left.compliance_rad_Nm in its place"},
+    {"mount.rotational_stiffness_right_Nm_rad",
+     "fit mount_rotational_compliance_right.compliance_rad_Nm in its place"},
     {"mount.slip_tension_N", "fit mount_slip.tension_N in its place"},
     {"pusher.tilt_deg",
      "forces depend on it to second order only: it has no derivative where the pusher stands upright"},
@@ -59,7 +63,8 @@ std::string why_not_fitted(std::string_view key) {
     const std::size_t end = key.find("].");
     if (end != std::string_view::npos) key.remove_prefix(end + 2);
   }
-  if (const std::size_t element = key.find('['); element != std::string_view::npos) key = key.substr(0, element);
+  if (const std::size_t element = key.find('['); element != std::string_view::npos)
+    key = key.substr(0, element);
   const auto found = std::ranges::find_if(reasons, [key](const Reason& r) { return r.key == key; });
   return found == std::end(reasons) ? "" : found->why;
 }

@@ -22,10 +22,12 @@ std::vector<RecordEffect> body_centre_of_mass_effects(const RecordModel& model) 
       RecordNumber number = number_at(own, model.declared().number(own).value_or(0.0), one_mm);
       number.overrides = [key, own, moved = number.overrides](double value, const StandingNumbers& record) {
         std::vector<base::Override> overrides = moved(value, record);
-        const bool there = record.number(own).has_value() ||
-                           std::ranges::any_of(record.set, [&](const base::Override& o) { return o.key == key; });
+        const bool there =
+            record.number(own).has_value() ||
+            std::ranges::any_of(record.set, [&](const base::Override& o) { return o.key == key; });
         if (!there)
-          overrides.insert(overrides.begin(), {key, "[0.0, 0.0, 0.0]"});  // an element of nothing cannot be set
+          overrides.insert(overrides.begin(),
+                           {key, "[0.0, 0.0, 0.0]"});  // an element of nothing cannot be set
         return overrides;
       };
       number.lower = -furthest;

@@ -10,7 +10,8 @@ std::vector<RecordEffect> body_inertia_effects(const RecordModel& model) {
     std::vector<std::pair<std::string, double>> moments;  // those that are not fitted by themselves
     for (const char* axis : {"[1]", "[2]", "[3]"}) {
       const auto declared = model.declared().number(key + axis);
-      if (declared && *declared > 0.0 && !is_fitted(model, key + axis)) moments.emplace_back(key + axis, *declared);
+      if (declared && *declared > 0.0 && !is_fitted(model, key + axis))
+        moments.emplace_back(key + axis, *declared);
     }
     if (moments.empty()) continue;
     RecordNumber factor = number_at(key + ".factor", 1.0, 0.02);

@@ -6,12 +6,14 @@ namespace {
 
 /// What a bushing gives, 1/k in the unit of that: motions go with it nearly in proportion, also where it is declared as good as rigid and gives a
 /// thousand times more. In a record that declares the stiffness k otherwise it gives more by the same factor.
-RecordNumber compliance_of(const std::string& key, const std::string& name, const std::string& unit, double stiffness) {
+RecordNumber compliance_of(const std::string& key, const std::string& name, const std::string& unit,
+                           double stiffness) {
   const double null = 1.0 / stiffness;
   RecordNumber number = number_at(name, null, 0.02 * null);
   number.unit = unit;
   number.overrides = [key, stiffness, null](double value, const StandingNumbers& record) {
-    return std::vector<base::Override>{{key, exact_text(record.number(key).value_or(stiffness) * (null / value))}};
+    return std::vector<base::Override>{
+        {key, exact_text(record.number(key).value_or(stiffness) * (null / value))}};
   };
   number.lower = 0.01 * null;
   number.upper = 1e6 * null;

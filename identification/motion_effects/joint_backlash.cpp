@@ -16,14 +16,15 @@ std::vector<RecordEffect> joint_backlash_effects(const RecordModel& model) {
       if (!(gap > 0.0)) return std::vector<base::Override>{};
       return std::vector<base::Override>{{law, "backlash"}, {key, exact_text(gap)}};
     };
-    effects.push_back({.name = "joint_backlash",
-                       .place = joint.name,
-                       .channel = "joint",
-                       .meaning = "the gear has play",
-                       .numbers = {number},
-                       .plausible_upper = 1.0,
-                       .one_sided = true,
-                       .independent_check = "hold the motor and move the link by hand: the angle without resistance"});
+    effects.push_back(
+        {.name = "joint_backlash",
+         .place = joint.name,
+         .channel = "joint",
+         .meaning = "the gear has play",
+         .numbers = {number},
+         .plausible_upper = 1.0,
+         .one_sided = true,
+         .independent_check = "hold the motor and move the link by hand: the angle without resistance"});
   }
   return effects;
 }

@@ -32,8 +32,9 @@ std::vector<RecordEffect> joint_breakaway_effects(const RecordModel& model) {
                        .meaning = "dry friction is larger at rest and falls off with the speed",
                        .numbers = {number},
                        .one_sided = declared == 0.0,
-                       .independent_check = "turn the joint at several small constant speeds: the torque falls with "
-                                            "the speed; and the torque at which it breaks away from rest"});
+                       .independent_check =
+                           "turn the joint at several small constant speeds: the torque falls with "
+                           "the speed; and the torque at which it breaks away from rest"});
   }
   return effects;
 }

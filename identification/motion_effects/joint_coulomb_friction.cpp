@@ -11,15 +11,14 @@ std::vector<RecordEffect> joint_coulomb_friction_effects(const RecordModel& mode
     if (!(joint.use.rate > 0.0) || !(joint.use.torque > 0.0)) continue;
     RecordNumber number = number_at(key, declared, 0.02 * joint.use.torque);
     number.lower = 0.0;
-    effects.push_back(
-        {.name = "joint_coulomb_friction",
-         .place = joint.name,
-         .channel = "joint",
-         .meaning = "dry friction resists the motion with a constant torque",
-         .numbers = {number},
-         .one_sided = declared == 0.0,
-         .independent_check =
-             "turn the joint slowly at constant speed in both directions: half the difference of the torques"});
+    effects.push_back({.name = "joint_coulomb_friction",
+                       .place = joint.name,
+                       .channel = "joint",
+                       .meaning = "dry friction resists the motion with a constant torque",
+                       .numbers = {number},
+                       .one_sided = declared == 0.0,
+                       .independent_check = "turn the joint slowly at constant speed in both directions: "
+                                            "half the difference of the torques"});
   }
   return effects;
 }

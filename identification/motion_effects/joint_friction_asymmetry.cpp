@@ -16,8 +16,9 @@ std::vector<RecordEffect> joint_friction_asymmetry_effects(const RecordModel& mo
                        .meaning = "friction differs with the direction, or the drive has an offset",
                        .numbers = {number},
                        .one_sided = false,
-                       .independent_check = "turn the joint slowly at constant speed in both directions: the mean of "
-                                            "the torques; then at rest with the drive off"});
+                       .independent_check =
+                           "turn the joint slowly at constant speed in both directions: the mean of "
+                           "the torques; then at rest with the drive off"});
   }
   return effects;
 }

@@ -9,16 +9,18 @@ std::vector<RecordEffect> joint_quadratic_drag_effects(const RecordModel& model)
     const std::string key = joint.prefix + "quadratic_Nms2_rad2";
     const double declared = model.declared().number(key).value_or(0.0);
     if (!(joint.use.rate > 0.0) || !(joint.use.torque > 0.0)) continue;
-    RecordNumber number = number_at(key, declared, 0.02 * joint.use.torque / (joint.use.rate * joint.use.rate));
+    RecordNumber number =
+        number_at(key, declared, 0.02 * joint.use.torque / (joint.use.rate * joint.use.rate));
     number.lower = 0.0;
-    effects.push_back({.name = "joint_quadratic_drag",
-                       .place = joint.name,
-                       .channel = "joint",
-                       .meaning = "drag grows with the square of the speed",
-                       .numbers = {number},
-                       .one_sided = declared == 0.0,
-                       .independent_check =
-                           "turn the joint at several constant speeds: curvature of the torque; or repeat in vacuum"});
+    effects.push_back(
+        {.name = "joint_quadratic_drag",
+         .place = joint.name,
+         .channel = "joint",
+         .meaning = "drag grows with the square of the speed",
+         .numbers = {number},
+         .one_sided = declared == 0.0,
+         .independent_check =
+             "turn the joint at several constant speeds: curvature of the torque; or repeat in vacuum"});
   }
   return effects;
 }

@@ -12,14 +12,15 @@ std::vector<RecordEffect> joint_viscous_asymmetry_effects(const RecordModel& mod
     const double viscous = model.declared().number(joint.prefix + "viscous_Nms_rad").value_or(0.0);
     if (!(viscous > 0.0)) continue;
     RecordNumber number = number_at(key, declared, 0.02 * viscous);
-    effects.push_back({.name = "joint_viscous_asymmetry",
-                       .place = joint.name,
-                       .channel = "joint",
-                       .meaning = "viscous friction differs with the direction",
-                       .numbers = {number},
-                       .one_sided = false,
-                       .independent_check =
-                           "turn the joint at several constant speeds in both directions: difference of the slopes"});
+    effects.push_back(
+        {.name = "joint_viscous_asymmetry",
+         .place = joint.name,
+         .channel = "joint",
+         .meaning = "viscous friction differs with the direction",
+         .numbers = {number},
+         .one_sided = false,
+         .independent_check =
+             "turn the joint at several constant speeds in both directions: difference of the slopes"});
   }
   return effects;
 }

@@ -12,13 +12,14 @@ std::vector<RecordEffect> joint_viscous_friction_effects(const RecordModel& mode
     RecordNumber number =
         number_at(key, declared, declared > 0.0 ? 0.02 * declared : 0.02 * joint.use.torque / joint.use.rate);
     number.lower = 0.0;
-    effects.push_back({.name = "joint_viscous_friction",
-                       .place = joint.name,
-                       .channel = "joint",
-                       .meaning = "friction in proportion to the speed is another",
-                       .numbers = {number},
-                       .one_sided = declared == 0.0,
-                       .independent_check = "turn the joint at several constant speeds: slope of the torque"});
+    effects.push_back(
+        {.name = "joint_viscous_friction",
+         .place = joint.name,
+         .channel = "joint",
+         .meaning = "friction in proportion to the speed is another",
+         .numbers = {number},
+         .one_sided = declared == 0.0,
+         .independent_check = "turn the joint at several constant speeds: slope of the torque"});
   }
   return effects;
 }

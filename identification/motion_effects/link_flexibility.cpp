@@ -22,7 +22,8 @@ std::vector<RecordEffect> link_flexibility_effects(const RecordModel& model) {
          .numbers = {number},
          .plausible_upper = declared + most / joint.use.torque,
          .one_sided = declared == 0.0,
-         .independent_check = "lock the joints, hang a known weight on the link's end and measure how far it bends"});
+         .independent_check =
+             "lock the joints, hang a known weight on the link's end and measure how far it bends"});
   }
   return effects;
 }

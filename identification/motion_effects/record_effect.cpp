@@ -46,8 +46,8 @@ RecordNumber number_at(const std::string& key, double null, double scale) {
   return number;
 }
 
-std::vector<RecordEffect> other_number(const RecordModel& model, const std::string& list, const std::string& key,
-                                       const RecordEffect& what) {
+std::vector<RecordEffect> other_number(const RecordModel& model, const std::string& list,
+                                       const std::string& key, const RecordEffect& what) {
   std::vector<RecordEffect> effects;
   for (const std::string& name : model.declared().names(list)) {
     const std::string full = fmt::format("{}[{}].{}", list, name, key);
@@ -83,15 +83,16 @@ std::vector<RecordEffect> other_joint_number(const RecordModel& model, const std
   return effects;
 }
 
-std::vector<RecordEffect> other_body_vector(const RecordModel& model, const std::string& key, const RecordEffect& what,
-                                            double scale) {
+std::vector<RecordEffect> other_body_vector(const RecordModel& model, const std::string& key,
+                                            const RecordEffect& what, double scale) {
   std::vector<RecordEffect> effects;
   for (const std::string& name : model.declared().names("bodies")) {
     const std::string whole = fmt::format("bodies[{}].{}", name, key);
     RecordEffect effect = what;
     effect.place = name;
     for (const char* axis : {"[1]", "[2]", "[3]"}) {
-      if (const auto declared = model.declared().number(whole + axis); declared && !is_fitted(model, whole + axis))
+      if (const auto declared = model.declared().number(whole + axis);
+          declared && !is_fitted(model, whole + axis))
         effect.numbers.push_back(number_at(whole + axis, *declared, scale));
     }
     if (!effect.numbers.empty()) effects.push_back(effect);
@@ -113,7 +114,8 @@ std::vector<ChannelPlace> channel_places(const RecordModel& model) {
     const Record& record = set.records[r];
     for (const RecordChannel& c : record.channels) {
       const std::string& column = model.column(c);
-      if (!c.fitted || std::any_of(places.begin(), places.end(), [&](const auto& p) { return p.column == column; }))
+      if (!c.fitted ||
+          std::any_of(places.begin(), places.end(), [&](const auto& p) { return p.column == column; }))
         continue;
       const auto n = static_cast<double>(c.values.size());
       const double way = record.times[record.times.size() - 1] - record.times[0];

@@ -11,7 +11,9 @@ std::vector<RecordEffect> sensor_bias_effects(const RecordModel& model) {
     number.unit = unit_of_key(channel.column);
     number.declared = 0.0;
     number.scale = 0.02 * channel.rms;
-    number.signal = [column = channel.column](SignalChanges& changes, double value) { changes[column].bias = value; };
+    number.signal = [column = channel.column](SignalChanges& changes, double value) {
+      changes[column].bias = value;
+    };
     effects.push_back({.name = "sensor_bias",
                        .place = channel.column,
                        .channel = "sensor",

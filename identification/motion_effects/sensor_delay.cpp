@@ -11,7 +11,9 @@ std::vector<RecordEffect> sensor_delay_effects(const RecordModel& model) {
     number.unit = "s";
     number.declared = 0.0;
     number.scale = channel.interval;
-    number.signal = [column = channel.column](SignalChanges& changes, double value) { changes[column].delay = value; };
+    number.signal = [column = channel.column](SignalChanges& changes, double value) {
+      changes[column].delay = value;
+    };
     effects.push_back({.name = "sensor_delay",
                        .place = channel.column,
                        .channel = "sensor",

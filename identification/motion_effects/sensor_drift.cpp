@@ -11,7 +11,9 @@ std::vector<RecordEffect> sensor_drift_effects(const RecordModel& model) {
     number.unit = unit_of_key(channel.column) + "/s";
     number.declared = 0.0;
     number.scale = 0.02 * channel.rms / channel.duration;
-    number.signal = [column = channel.column](SignalChanges& changes, double value) { changes[column].drift = value; };
+    number.signal = [column = channel.column](SignalChanges& changes, double value) {
+      changes[column].drift = value;
+    };
     effects.push_back({.name = "sensor_drift",
                        .place = channel.column,
                        .channel = "sensor",

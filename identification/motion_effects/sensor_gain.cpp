@@ -11,7 +11,9 @@ std::vector<RecordEffect> sensor_gain_effects(const RecordModel& model) {
     number.unit = "";
     number.declared = 1.0;
     number.scale = 0.01;
-    number.signal = [column = channel.column](SignalChanges& changes, double value) { changes[column].gain = value; };
+    number.signal = [column = channel.column](SignalChanges& changes, double value) {
+      changes[column].gain = value;
+    };
     effects.push_back({.name = "sensor_gain",
                        .place = channel.column,
                        .channel = "sensor",

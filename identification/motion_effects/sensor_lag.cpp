@@ -12,7 +12,9 @@ std::vector<RecordEffect> sensor_lag_effects(const RecordModel& model) {
     number.declared = 0.0;
     number.lower = 0.0;
     number.scale = channel.interval;
-    number.signal = [column = channel.column](SignalChanges& changes, double value) { changes[column].lag = value; };
+    number.signal = [column = channel.column](SignalChanges& changes, double value) {
+      changes[column].lag = value;
+    };
     effects.push_back(
         {.name = "sensor_lag",
          .place = channel.column,
@@ -21,7 +23,8 @@ std::vector<RecordEffect> sensor_lag_effects(const RecordModel& model) {
          .numbers = {number},
          .plausible_upper = 0.5,
          .one_sided = true,
-         .independent_check = "look into the settings of the amplifier; compare with a faster sensor on a step"});
+         .independent_check =
+             "look into the settings of the amplifier; compare with a faster sensor on a step"});
   }
   return effects;
 }

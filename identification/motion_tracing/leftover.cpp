@@ -16,8 +16,8 @@ struct Tally {
   double tried = 0.0, left = 0.0;  // squares
 };
 
-void tally(const std::vector<double>& abscissa, const std::vector<double>& residual, const std::vector<int>& block,
-           Tally& sum) {
+void tally(const std::vector<double>& abscissa, const std::vector<double>& residual,
+           const std::vector<int>& block, Tally& sum) {
   const auto ends = std::minmax_element(abscissa.begin(), abscissa.end());
   const double low = *ends.first;
   const double width = (*ends.second - low) / steps;
@@ -80,7 +80,8 @@ std::vector<Leftover> leftovers(const RecordModel& model, const RecordData& data
     tally(pair[0], pair[1], block_of[key.first], sum);
     if (sum.tried > 0.0) found.push_back({key.first, key.second, 1.0 - sum.left / sum.tried});
   }
-  std::stable_sort(found.begin(), found.end(), [](const Leftover& a, const Leftover& b) { return a.share > b.share; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Leftover& a, const Leftover& b) { return a.share > b.share; });
   return found;
 }
 

@@ -16,6 +16,7 @@ struct Leftover {
 };
 
 /// For every fitted channel, best first.
-[[nodiscard]] std::vector<Leftover> leftovers(const RecordModel& model, const RecordData& data, const RecordFit& fit);
+[[nodiscard]] std::vector<Leftover> leftovers(const RecordModel& model, const RecordData& data,
+                                              const RecordFit& fit);
 
 }  // namespace snare::identification

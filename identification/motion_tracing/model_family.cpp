@@ -35,7 +35,8 @@ std::vector<ModelFamily> fit_families(const RecordSet& set, const ChannelScales&
     std::vector<RecordSetting> start = model.free_settings(fitted);
     for (RecordSetting& s : start)
       for (const RecordSetting& reached : base)
-        if (reached.number.key == s.number.key && reached.number.declared == s.number.declared) s.value = reached.value;
+        if (reached.number.key == s.number.key && reached.number.declared == s.number.declared)
+          s.value = reached.value;
     RecordFitOptions options;
     options.progress = [&](int iteration, double chi2) {
       stop = progress && !progress(iteration, chi2);
@@ -72,8 +73,8 @@ std::vector<std::string> family_differences(const std::vector<TracedNumber>& bas
       told.push_back(
           fmt::format("{} is {:.5g} {} [{:.5g}, {:.5g}], and {:.5g} with the models of family {}: a "
                       "systematic difference between models of {:.2g} %, which no interval holds",
-                      here->key, here->value, here->unit, *here->lower, *here->upper, there.value, family.name,
-                      100.0 * (there.value / here->value - 1.0)));
+                      here->key, here->value, here->unit, *here->lower, *here->upper, there.value,
+                      family.name, 100.0 * (there.value / here->value - 1.0)));
     }
   }
   return told;

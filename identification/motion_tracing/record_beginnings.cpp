@@ -22,8 +22,8 @@ constexpr auto fewest = static_cast<Eigen::Index>(fewest_readings);
 
 }  // namespace
 
-RecordFit fit_from_beginnings(const RecordModel& model, const RecordData& data, const std::vector<RecordSetting>& start,
-                              const RecordFitOptions& options) {
+RecordFit fit_from_beginnings(const RecordModel& model, const RecordData& data,
+                              const std::vector<RecordSetting>& start, const RecordFitOptions& options) {
   RecordFitOptions on_the_way = options;
   on_the_way.derivatives = FitDerivatives::last;
   on_the_way.first_jacobian.resize(0, 0);
@@ -58,7 +58,8 @@ RoundResult round_from_beginnings(const RoundInput& in, const std::vector<Record
     if (!found.added) continue;
     // What the beginnings do not tell apart the whole records do.
     int tried = 0;
-    for (std::size_t k = 0; k < found.round.candidates.size() && tried < most_members && !in.model.stopped(); ++k) {
+    for (std::size_t k = 0; k < found.round.candidates.size() && tried < most_members && !in.model.stopped();
+         ++k) {
       const RecordCandidate& c = found.round.candidates[k];
       if (c.class_index != 0 || !c.refitted) continue;
       ++tried;

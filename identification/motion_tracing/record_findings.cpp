@@ -44,13 +44,15 @@ struct ChannelSums {
   }
 };
 
-std::map<std::string, ChannelSums> sums_of(const RecordData& data, const std::vector<RecordPrediction>& predictions) {
+std::map<std::string, ChannelSums> sums_of(const RecordData& data,
+                                           const std::vector<RecordPrediction>& predictions) {
   std::map<std::string, ChannelSums> sums;
   for (const ResidualPiece& piece : data.pieces) {
     const RecordPrediction& prediction = predictions[data.place_of(piece.record)];
     if (!prediction.usable() || prediction.channels.size() <= piece.channel) continue;
     const RecordChannel& channel = data.set->records[piece.record].channels[piece.channel];
-    const Eigen::VectorXd m = channel.values.head(piece.size), p = prediction.channels[piece.channel].head(piece.size);
+    const Eigen::VectorXd m = channel.values.head(piece.size),
+                          p = prediction.channels[piece.channel].head(piece.size);
     const Eigen::VectorXd measured = m.array() - m.mean(), predicted = p.array() - p.mean();
     ChannelSums& s = sums[channel.sensor];
     s.measured += measured.squaredNorm();
@@ -80,8 +82,9 @@ std::optional<Finding> channel_finding(const std::string& sensor, const ChannelS
   if (slip == nullptr) return std::nullopt;
   f.kind = FindingKind::unit_slip;
   f.limit = slip->factor;
-  f.what = fmt::format("the readings of {} are {:.4g} times what the scenario's sensor reads: it looks like {}", sensor,
-                       multiple, slip->units);
+  f.what =
+      fmt::format("the readings of {} are {:.4g} times what the scenario's sensor reads: it looks like {}",
+                  sensor, multiple, slip->units);
   return f;
 }
 
@@ -113,14 +116,16 @@ std::vector<Finding> number_findings(const RecordStage& stage, const std::vector
   for (const TracedNumber& n : stage.numbers) {
     if (n.bound != AtBound::none) {
       const bool lower = n.bound == AtBound::lower;
-      Finding f{.kind = FindingKind::on_bound, .key = n.key, .unit = n.unit, .value = n.value, .limit = n.value};
-      f.what =
-          fmt::format("{} = {:.4g}{}{} stands on its {} bound: the records ask for {} than is admissible", n.key,
-                      n.value, n.unit.empty() ? "" : " ", n.unit, lower ? "lower" : "upper", lower ? "less" : "more");
+      Finding f{
+          .kind = FindingKind::on_bound, .key = n.key, .unit = n.unit, .value = n.value, .limit = n.value};
+      f.what = fmt::format(
+          "{} = {:.4g}{}{} stands on its {} bound: the records ask for {} than is admissible", n.key, n.value,
+          n.unit.empty() ? "" : " ", n.unit, lower ? "lower" : "upper", lower ? "less" : "more");
       findings.push_back(std::move(f));
       continue;
     }
-    const auto declared = std::ranges::find_if(settings, [&](const RecordSetting& s) { return s.number.key == n.key; });
+    const auto declared =
+        std::ranges::find_if(settings, [&](const RecordSetting& s) { return s.number.key == n.key; });
     if (!n.identified || declared == settings.end() || declared->number.declared == 0.0) continue;
     const double ratio = n.value / declared->number.declared;
     const Factor* slip = near_factor(ratio, within);

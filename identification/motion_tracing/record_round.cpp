@@ -16,11 +16,12 @@ namespace {
 constexpr std::size_t most_refits = 5;  // of effects that come out within their physical range
 constexpr std::size_t most_tried =
     15;  // with those that do not: what is missing may be hidden behind many that imitate it in part
-constexpr double promising = 0.3;    // of the best promise: what falls less is not refitted
-constexpr double good_part = 0.2;    // of the motion, as roots of sums of squares: a fit that leaves it is out of step
-constexpr double least_fall = 1e-4;  // share of the misfit below which a refit has not moved
+constexpr double promising = 0.3;  // of the best promise: what falls less is not refitted
+constexpr double good_part =
+    0.2;  // of the motion, as roots of sums of squares: a fit that leaves it is out of step
+constexpr double least_fall = 1e-4;    // share of the misfit below which a refit has not moved
 constexpr int enough_iterations = 12;  // to compare effects; the one that is named is fitted to the end
-constexpr double apart = 2.0;          // deviates by which the misfits of two refits must differ to be told apart
+constexpr double apart = 2.0;  // deviates by which the misfits of two refits must differ to be told apart
 
 /// The model with the numbers of an effect beside those that are fitted. From null the first step moves both as they belong together.
 RecordFit refit(const RoundInput& in, const RecordScore& score) {
@@ -66,7 +67,9 @@ struct Refit {
   Eigen::VectorXd heldout;  ///< residual of the records held out, where they were asked
 
   /// To choose by: as in the Bayesian criterion a number must take log n times what it takes by chance.
-  [[nodiscard]] double criterion() const { return fit.chi2 + heldout.squaredNorm() + chance * std::log(readings); }
+  [[nodiscard]] double criterion() const {
+    return fit.chi2 + heldout.squaredNorm() + chance * std::log(readings);
+  }
   /// To compare with: without what chance has taken.
   [[nodiscard]] double misfit() const { return fit.chi2 + heldout.squaredNorm() + chance; }
 };
@@ -111,8 +114,9 @@ std::string objection(const RoundInput& in, const RecordCandidate& c, const Reco
   const RecordEffect& effect = in.effects[c.score.effect];
   const double value = c.settings.front().value;
   if (!c.plausible)
-    return fmt::format("{} = {:.5g} {} is outside {:.5g} to {:.5g}, the physical range", c.numbers.front().key, value,
-                       c.numbers.front().unit, effect.plausible_lower, effect.plausible_upper);
+    return fmt::format("{} = {:.5g} {} is outside {:.5g} to {:.5g}, the physical range",
+                       c.numbers.front().key, value, c.numbers.front().unit, effect.plausible_lower,
+                       effect.plausible_upper);
   bool large = false;
   for (const ResidualPiece& p : in.data.pieces) {
     const std::string& sensor = in.data.set->records[p.record].channels[p.channel].sensor;
@@ -155,10 +159,11 @@ RoundResult record_round(const RoundInput& in) {
   const auto significant = [&](const RecordCandidate& c) {
     return c.score.unobservable.empty() && c.score.adjusted_p < in.significance;
   };
-  std::stable_sort(candidates.begin(), candidates.end(), [&](const RecordCandidate& a, const RecordCandidate& b) {
-    if (significant(a) != significant(b)) return significant(a);
-    return significant(a) ? a.score.fall > b.score.fall : a.score.p < b.score.p;
-  });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [&](const RecordCandidate& a, const RecordCandidate& b) {
+                     if (significant(a) != significant(b)) return significant(a);
+                     return significant(a) ? a.score.fall > b.score.fall : a.score.p < b.score.p;
+                   });
   if (candidates.empty() || !significant(candidates.front())) {
     result.round.reason = "no effect of the catalogue is significant";
     return result;
@@ -186,7 +191,8 @@ RoundResult record_round(const RoundInput& in) {
     c.plausible = value >= effect.plausible_lower && value <= effect.plausible_upper;
     c.why_not = objection(in, c, fit);
   };
-  for (std::size_t k = 0; k < candidates.size() && (all || (k < most_tried && plausible < most_refits)); ++k) {
+  for (std::size_t k = 0; k < candidates.size() && (all || (k < most_tried && plausible < most_refits));
+       ++k) {
     const RecordCandidate& c = candidates[k];
     if (!significant(c) || (!all && plausible > 0 && c.score.fall < promising * promise)) break;
     if (in.model.stopped()) return result;
@@ -219,7 +225,9 @@ RoundResult record_round(const RoundInput& in) {
     if (x.why_not.empty() != y.why_not.empty()) return x.why_not.empty();
     return fits[a].criterion() < fits[b].criterion();
   });
-  const auto may_be_named = [&](std::size_t k) { return candidates[k].refitted && candidates[k].why_not.empty(); };
+  const auto may_be_named = [&](std::size_t k) {
+    return candidates[k].refitted && candidates[k].why_not.empty();
+  };
   for (std::size_t k = 1; k < order.size() && may_be_named(order[k]); ++k)
     if (fits[order[k]].criterion() <= (1.0 + the_same) * fits[order[0]].criterion() &&
         candidates[order[k]].score.effect < candidates[order[0]].score.effect)
@@ -234,8 +242,9 @@ RoundResult record_round(const RoundInput& in) {
   candidates = std::move(sorted);
   fits = std::move(sorted_fits);
   if (const RecordCandidate& best = candidates.front(); !best.refitted || !best.why_not.empty()) {
-    result.round.reason = best.refitted ? fmt::format("{}: {}", in.effects[best.score.effect].label(), best.why_not)
-                                        : "no effect could be fitted";
+    result.round.reason = best.refitted
+                              ? fmt::format("{}: {}", in.effects[best.score.effect].label(), best.why_not)
+                              : "no effect could be fitted";
     return result;
   }
   std::vector<std::size_t> members{0}, of;
@@ -249,7 +258,8 @@ RoundResult record_round(const RoundInput& in) {
   if (in.heldout && several) {
     const std::vector<std::size_t> settled = settle(in, scores.noise, fits, of, members);
     for (const std::size_t k : members)
-      if (fits[k].heldout.size() > 0) candidates[k].heldout_improves = fits[k].heldout.squaredNorm() < in.heldout_now;
+      if (fits[k].heldout.size() > 0)
+        candidates[k].heldout_improves = fits[k].heldout.squaredNorm() < in.heldout_now;
     if (!settled.empty()) members = settled;
   }
   const std::size_t chosen = members.front();
@@ -264,8 +274,8 @@ RoundResult record_round(const RoundInput& in) {
   }
   result.round.added = result.round.classes.front().front();
   result.round.reason = members.size() > 1 ? "best of a class that these records cannot tell apart"
-                        : several          ? "the records held out tell it from others that do as well in those fitted"
-                                           : "explains most, and nothing else does as well";
+                        : several ? "the records held out tell it from others that do as well in those fitted"
+                                  : "explains most, and nothing else does as well";
   std::rotate(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(chosen),
               candidates.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
   std::rotate(fits.begin(), fits.begin() + static_cast<std::ptrdiff_t>(chosen),

@@ -18,7 +18,8 @@ struct RoundInput {
   const std::vector<RecordEffect>& effects;
   const std::vector<std::size_t>& selected;  ///< indices of effects that are part of `current`
   double significance = 0.01;
-  std::map<std::string, double> tolerance = {};  ///< by which a channel's error must fall, as the root of squares
+  std::map<std::string, double> tolerance =
+      {};  ///< by which a channel's error must fall, as the root of squares
   /// Of the records held out: their readings, and the residual of a fit there (empty: no motion). They choose among what the fitted ones do not
   /// tell apart, and are not asked otherwise.
   const RecordData* heldout_data = nullptr;

@@ -65,7 +65,8 @@ void try_sizes(const RecordModel& model, const RecordData& data, const RecordFit
     }
     trials[t].column = sum * (trials[t].scale / way);
     const double change = trial_share * trials[t].column.norm() / size;
-    trials[t].settled = (change >= least_change && change <= most_change) || change == 0.0;  // nothing hangs on it
+    trials[t].settled =
+        (change >= least_change && change <= most_change) || change == 0.0;  // nothing hangs on it
     if (!trials[t].settled) {
       const double factor = std::clamp(wanted_change / std::max(change, 1e-8), 1e-5, 1e5);
       trials[t].column *= factor;  // if this was the last pass
@@ -81,7 +82,8 @@ Eigen::MatrixXd free_to_move(const RecordFit& fit) {
   for (Eigen::Index k = 0; k < fit.jacobian.cols(); ++k) {
     const RecordSetting& s = fit.settings[static_cast<std::size_t>(k)];
     const double pull = fit.jacobian.col(k).dot(fit.residual);  // > 0: a larger number leaves less
-    const bool held = (s.value <= s.number.lower && pull <= 0.0) || (s.value >= s.number.upper && pull >= 0.0);
+    const bool held =
+        (s.value <= s.number.lower && pull <= 0.0) || (s.value >= s.number.upper && pull >= 0.0);
     if (!held) moving.push_back(k);
   }
   return fit.jacobian(Eigen::all, moving);
@@ -89,7 +91,8 @@ Eigen::MatrixXd free_to_move(const RecordFit& fit) {
 
 /// Columns with the fitted ones out, of the numbers that do what neither these nor the numbers before them do. Of a vector the components that
 /// change the records a hundred times less than another one are left out: at sizes that show them the motion is another.
-void keep_independent(const Projection& projection, const std::vector<const Trial*>& seen, RecordScore& score) {
+void keep_independent(const Projection& projection, const std::vector<const Trial*>& seen,
+                      RecordScore& score) {
   constexpr double absorbed = 1e-3;  // of the change: below it others do the same
   constexpr double hardly = 0.01;
   std::vector<Eigen::VectorXd> kept, whole, directions;
@@ -162,7 +165,8 @@ RecordScores score_motion(const RecordModel& model, const RecordData& data, cons
   for (std::size_t e = 0; e < effects.size(); ++e)
     for (std::size_t n = 0; n < effects[e].numbers.size(); ++n)
       trials.push_back({e, n, effects[e].numbers[n].scale, false, {}});
-  for (int pass = 0; pass < most_passes && !model.stopped(); ++pass) try_sizes(model, data, fit, all, effects, trials);
+  for (int pass = 0; pass < most_passes && !model.stopped(); ++pass)
+    try_sizes(model, data, fit, all, effects, trials);
 
   RecordScores result;
   const Eigen::MatrixXd fitted = free_to_move(fit);
@@ -201,23 +205,26 @@ RecordScores score_motion(const RecordModel& model, const RecordData& data, cons
   const Eigen::Index columns = std::min(everything.cols(), data.rows / 2);  // each takes a degree of freedom
   const Eigen::VectorXd left = Projection(everything).without(fit.residual);
   result.noise = coloured_noise(data, left, columns);
-  const double power = std::max(1e-300, left.squaredNorm() / std::max(1.0, static_cast<double>(data.rows - columns)));
+  const double power =
+      std::max(1e-300, left.squaredNorm() / std::max(1.0, static_cast<double>(data.rows - columns)));
 
   std::vector<double> p;
   for (RecordScore& score : result.scores) {
-    if (score.unobservable.empty()) judge(data, result.noise, power, fit.residual, effects[score.effect], score);
+    if (score.unobservable.empty())
+      judge(data, result.noise, power, fit.residual, effects[score.effect], score);
     if (score.unobservable.empty()) p.push_back(score.p);
   }
   const std::vector<double> adjusted = holm(p);
-  const double needed =
-      normal_quantile(significance / std::max<double>(1.0, static_cast<double>(p.size()))) + 1.2816;  // nine of ten
+  const double needed = normal_quantile(significance / std::max<double>(1.0, static_cast<double>(p.size()))) +
+                        1.2816;  // nine of ten
   std::size_t next = 0;
   for (RecordScore& score : result.scores) {
     if (!score.unobservable.empty()) continue;
     score.adjusted_p = adjusted[next++];
     if (score.columns.cols() != 1) continue;
     const double norm = score.columns.squaredNorm();
-    score.detectable = needed * coloured(data, result.noise, score.columns).norm() / norm * score.scale.front();
+    score.detectable =
+        needed * coloured(data, result.noise, score.columns).norm() / norm * score.scale.front();
   }
   return result;
 }

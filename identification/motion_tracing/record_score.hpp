@@ -20,24 +20,26 @@ struct RecordScore {
   double fall = 0.0;         ///< of the sum of squares that it promises, to first order
   double chance = 0.0;       ///< fall that noise alone would bring, in the mean
   std::vector<std::size_t>
-      numbers;                ///< of the effect's those that these records show, and that the others do not do as well
+      numbers;  ///< of the effect's those that these records show, and that the others do not do as well
   std::vector<double> start;  ///< of these numbers, for a refit
   std::vector<double> scale;  ///< at which they were tried
-  std::optional<double> detectable;  ///< size of the first number that would be seen in nine of ten cases, in its unit
-  Eigen::MatrixXd whole;             ///< of the signal by the numbers over their scales
-  Eigen::MatrixXd columns;           ///< the same, fitted columns out
+  std::optional<double>
+      detectable;           ///< size of the first number that would be seen in nine of ten cases, in its unit
+  Eigen::MatrixXd whole;    ///< of the signal by the numbers over their scales
+  Eigen::MatrixXd columns;  ///< the same, fitted columns out
 };
 
 /// What the tests of one round rest on.
 struct RecordScores {
   std::vector<RecordScore> scores;
-  ColouredNoise noise;  ///< of what is left when all columns at once are taken out: of that no effect is a part
+  ColouredNoise
+      noise;  ///< of what is left when all columns at once are taken out: of that no effect is a part
 };
 
 /// Tests of all effects at a level `significance` (for what would be detected). The size of the trial follows from what it changes:
 /// between a fiftieth of the residual and as much as it.
-[[nodiscard]] RecordScores score_motion(const RecordModel& model, const RecordData& data, const RecordFit& fit,
-                                        const std::vector<RecordSetting>& fixed,
+[[nodiscard]] RecordScores score_motion(const RecordModel& model, const RecordData& data,
+                                        const RecordFit& fit, const std::vector<RecordSetting>& fixed,
                                         const std::vector<RecordEffect>& effects, double significance);
 
 }  // namespace snare::identification

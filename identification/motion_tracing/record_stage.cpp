@@ -52,8 +52,9 @@ double rmse_of(const RecordData& data, const Eigen::VectorXd& residual) {
   if (residual.size() == 0) return 0.0;
   bool one = true;
   for (const ResidualPiece& p : data.pieces)
-    one = one && data.set->records[p.record].channels[p.channel].sensor ==
-                     data.set->records[data.pieces.front().record].channels[data.pieces.front().channel].sensor;
+    one =
+        one && data.set->records[p.record].channels[p.channel].sensor ==
+                   data.set->records[data.pieces.front().record].channels[data.pieces.front().channel].sensor;
   double sum = 0.0;
   for (const ResidualPiece& p : data.pieces)
     sum += residual.segment(p.begin, p.size).squaredNorm() * (one ? p.scale * p.scale : 1.0);
@@ -70,7 +71,8 @@ double reading_sigma(const RecordSet& set, const std::string& sensor) {
       if (c.sensor != sensor) continue;
       if (c.sigma) return *c.sigma;
       const Eigen::Index n = c.values.size();
-      const Eigen::VectorXd second = c.values.head(n - 2) - 2.0 * c.values.segment(1, n - 2) + c.values.tail(n - 2);
+      const Eigen::VectorXd second =
+          c.values.head(n - 2) - 2.0 * c.values.segment(1, n - 2) + c.values.tail(n - 2);
       for (const double d : second) sizes.push_back(std::abs(d));
       sum += second.squaredNorm();
     }
@@ -79,7 +81,8 @@ double reading_sigma(const RecordSet& set, const std::string& sensor) {
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
   // A coarse encoder stands still most of the time: then the mean square.
-  const double of_one = *middle > 0.0 ? *middle / median_of_normal : std::sqrt(sum / static_cast<double>(sizes.size()));
+  const double of_one =
+      *middle > 0.0 ? *middle / median_of_normal : std::sqrt(sum / static_cast<double>(sizes.size()));
   return of_one / std::sqrt(6.0);
 }
 
@@ -166,7 +169,8 @@ RecordStage record_stage(const RecordModel& model, const RecordData& data, const
   const double free = std::max(1.0, readings - static_cast<double>(fit.settings.size()));
   stage.chi2_dof = count > 0.0 ? squares / count * (readings / free) : 0.0;
   stage.predictions.resize(model.records().records.size());
-  for (std::size_t k = 0; k < data.records.size(); ++k) stage.predictions[data.records[k]] = fit.predictions[k];
+  for (std::size_t k = 0; k < data.records.size(); ++k)
+    stage.predictions[data.records[k]] = fit.predictions[k];
   if (heldout == nullptr) return stage;
   stage.heldout = errors_of(model, heldout_data.records, heldout->predictions);
   stage.heldout_rmse = rmse_of(heldout_data, heldout->residual);

@@ -22,7 +22,7 @@ struct TracedNumber {
   /// 95 %, of correlated residuals; absent where the records do not show it, and at the bound on which the number stands.
   std::optional<double> lower, upper;
   AtBound bound = AtBound::none;  ///< on which it stands
-  bool identified = true;         ///< the records change with it, and no null direction moves it: theory.md (I.32)
+  bool identified = true;  ///< the records change with it, and no null direction moves it: theory.md (I.32)
 };
 
 /// Numbers that move together while no reading changes: theory.md (I.32).
@@ -49,8 +49,9 @@ struct RecordStage {
   std::vector<ChannelError> errors;  ///< of the fitted records
   std::vector<ChannelError>
       heldout;  ///< of the others; numbers of every record for itself are fitted to them, nothing else
-  double rmse = 0.0, nrmse = 0.0;  ///< over the fitted channels: in the unit of the only one, else over their scales
-  double chi2_dof = 0.0;           ///< against the noise
+  double rmse = 0.0,
+         nrmse = 0.0;     ///< over the fitted channels: in the unit of the only one, else over their scales
+  double chi2_dof = 0.0;  ///< against the noise
   double heldout_rmse = 0.0;
   std::vector<RecordPrediction> predictions;  ///< of all records of the set, in its order
 };
@@ -59,8 +60,8 @@ struct RecordStage {
 struct RecordCandidate {
   RecordScore score;
   bool refitted = false;
-  double rmse = 0.0;                    ///< after the refit, as RecordStage::rmse, in the unit of the channel or [-]
-  double delta_bic = 0.0;               ///< of the refit, of prewhitened residuals
+  double rmse = 0.0;       ///< after the refit, as RecordStage::rmse, in the unit of the channel or [-]
+  double delta_bic = 0.0;  ///< of the refit, of prewhitened residuals
   std::vector<TracedNumber> numbers;    ///< of the effect after the refit, as the keys are set
   std::vector<RecordSetting> settings;  ///< the same, as the fit has them: counted from what is declared
   bool plausible = true;
@@ -89,18 +90,20 @@ struct ModelFamily {
 struct RecordTrace {
   std::vector<RecordEffect> effects;
   RecordStage declared, base, final;
-  std::string noise_source;                               ///< "declared", "second_differences"
-  double sigma = 0.0;                                     ///< of the fitted channels together, as RecordStage::rmse
-  bool significant = false;                               ///< what the base leaves
+  std::string noise_source;  ///< "declared", "second_differences"
+  double sigma = 0.0;        ///< of the fitted channels together, as RecordStage::rmse
+  bool significant = false;  ///< what the base leaves
   double ljung_box = 1.0, runs = 1.0, lack_of_fit = 1.0;  ///< p of the base's residual
   std::vector<RecordRound> rounds;
   std::vector<std::string> selected;  ///< labels
   std::vector<std::size_t> selected_effects;
-  std::vector<std::string> partial;  ///< labels of effects that help without explaining: none of them is named
+  std::vector<std::string>
+      partial;  ///< labels of effects that help without explaining: none of them is named
   std::optional<RecordStage> with_partial;
   VerdictKind kind = VerdictKind::nothing_missing;
   double share_left = 0.0;  ///< of what the base leaves beside the noise, as mean squares [-]
-  std::string channel;      ///< of the first effect selected; not explained: the sensor with most beside its noise
+  std::string
+      channel;  ///< of the first effect selected; not explained: the sensor with most beside its noise
   std::vector<Leftover> leftovers;
   std::vector<Profile> profiles;      ///< of the numbers for which they are asked, in the final model
   std::vector<ModelFamily> families;  ///< of the base fit, as the file lists them

@@ -26,7 +26,7 @@ class Tracer {
   Tracer(const RecordSet& set, const RecordTraceOptions& options)
       : set_(set),
         options_(options),
-        model_(set, [this] { return stop_; }),
+        model_(set, [this] { return stop_ || (options_.stop && options_.stop()); }),
         fitted_(set.used(false)),
         heldout_(set.used(true)) {}
 
@@ -38,7 +38,8 @@ class Tracer {
     look.progress = asked();
     // The numbers of every record for itself are no part of the model: also the declared one has its own.
     std::vector<RecordSetting> own, shared;
-    for (const RecordSetting& s : model_.free_settings(fitted_)) (s.number.record ? own : shared).push_back(s);
+    for (const RecordSetting& s : model_.free_settings(fitted_))
+      (s.number.record ? own : shared).push_back(s);
     look.fixed = shared;
     const RecordFit declared = fit_motion(model_, data_, own, look);
     if (!declared.report.usable()) return end(declared.report.message);
@@ -103,18 +104,19 @@ class Tracer {
         trace_.profiles.push_back(std::move(found));
       }
     }
-    constexpr double worth_a_word = 0.1;  // of a deviate squared: no interval moves by a twentieth of its width
+    constexpr double worth_a_word =
+        0.1;  // of a deviate squared: no interval moves by a twentieth of its width
     for (const Profile& p : trace_.profiles) {
       if (p.fall > worth_a_word)
-        trace_.warnings.push_back(
-            fmt::format("the profile of {} meets a sum of squares that is lower than that of the fit: begin from "
-                        "other values",
-                        p.key));
+        trace_.warnings.push_back(fmt::format(
+            "the profile of {} meets a sum of squares that is lower than that of the fit: begin from "
+            "other values",
+            p.key));
       for (const bool upper : {false, true})
         if ((upper ? p.upper : p.lower).end == ProfileEnd::open)
-          trace_.warnings.push_back(fmt::format("{} has no {} limit of 95 %: its profile stays below that to {:.4g} {}",
-                                                p.key, upper ? "upper" : "lower",
-                                                (upper ? p.points.back() : p.points.front()).value, p.unit));
+          trace_.warnings.push_back(fmt::format(
+              "{} has no {} limit of 95 %: its profile stays below that to {:.4g} {}", p.key,
+              upper ? "upper" : "lower", (upper ? p.points.back() : p.points.front()).value, p.unit));
     }
   }
   /// What other kinds of models take the numbers of the base for.
@@ -131,11 +133,11 @@ class Tracer {
       const Record& record = set_.records[r];
       const double length = record.times[record.times.size() - 1] - record.times[0];
       if (slow && length < slow->period)
-        trace_.warnings.push_back(
-            fmt::format("record {} lasts {:.4g} s, less than the slowest period of the declared scenario, {:.4g} s "
-                        "({}): it shows what belongs "
-                        "to that in part only",
-                        record.name, length, slow->period, slow->of));
+        trace_.warnings.push_back(fmt::format(
+            "record {} lasts {:.4g} s, less than the slowest period of the declared scenario, {:.4g} s "
+            "({}): it shows what belongs "
+            "to that in part only",
+            record.name, length, slow->period, slow->of));
     }
     for (const TracedNumber& n : trace_.final.numbers) {
       const bool of_file = std::any_of(set_.free.begin(), set_.free.end(), [&](const FreeNumber& f) {
@@ -143,9 +145,9 @@ class Tracer {
       });
       if (!of_file || !(model_.declared().number(n.key).value_or(0.0) > 0.0)) continue;
       if (n.identified && half_width_95 * n.stderr_ >= std::abs(n.value))
-        trace_.warnings.push_back(
-            fmt::format("{} is not identifiable from these records: {:.4g} with a standard error of {:.4g} {}", n.key,
-                        n.value, n.stderr_, n.unit));
+        trace_.warnings.push_back(fmt::format(
+            "{} is not identifiable from these records: {:.4g} with a standard error of {:.4g} {}", n.key,
+            n.value, n.stderr_, n.unit));
     }
   }
   void reached() {
@@ -162,8 +164,8 @@ class Tracer {
   RecordTrace end(std::string why) {
     for (const Finding& f : trace_.findings) why += "; " + f.what;
     trace_.interrupted = stop_;
-    static_cast<void>(
-        trace_.report.end(stop_ ? numerics::Termination::interrupted : numerics::Termination::step_too_small, why));
+    static_cast<void>(trace_.report.end(
+        stop_ ? numerics::Termination::interrupted : numerics::Termination::step_too_small, why));
     trace_.simulations = model_.simulations();
     return std::move(trace_);
   }
@@ -186,8 +188,8 @@ class Tracer {
       const RecordChannel& c = set_.records[p.record].channels[p.channel];
       undeclared[c.sensor] = !c.sigma;
     }
-    const bool several = undeclared.size() > 1 &&
-                         std::any_of(undeclared.begin(), undeclared.end(), [](const auto& u) { return u.second; });
+    const bool several = undeclared.size() > 1 && std::any_of(undeclared.begin(), undeclared.end(),
+                                                              [](const auto& u) { return u.second; });
     for (int k = 0; several && k < most_reweighings && fit.report.usable(); ++k) {
       ChannelScales scales;
       std::map<std::string, double> count;
@@ -231,7 +233,8 @@ class Tracer {
   RecordStage stage(const RecordFit& fit, const std::vector<RecordSetting>& fixed) {
     const std::optional<RecordFit> heldout = on_heldout(fit, fixed);
     heldout_residual_ = heldout && heldout->report.usable() ? heldout->residual : Eigen::VectorXd();
-    return record_stage(model_, data_, fit, heldout && heldout->report.usable() ? &*heldout : nullptr, heldout_data_);
+    return record_stage(model_, data_, fit, heldout && heldout->report.usable() ? &*heldout : nullptr,
+                        heldout_data_);
   }
 
   /// Whether the error of a channel is more than is worth a name.
@@ -251,7 +254,8 @@ class Tracer {
       const std::string& sensor = set_.records[p.record].channels[p.channel].sensor;
       for (const ChannelError& e : s.errors) {
         if (!e.fitted || !(e.sigma > 0.0) || e.sensor != sensor) continue;
-        found[sensor].chi2 += residual.segment(p.begin, p.size).squaredNorm() * p.scale * p.scale / (e.sigma * e.sigma);
+        found[sensor].chi2 +=
+            residual.segment(p.begin, p.size).squaredNorm() * p.scale * p.scale / (e.sigma * e.sigma);
         found[sensor].readings += static_cast<double>(p.size);
       }
     }
@@ -259,8 +263,8 @@ class Tracer {
   }
 
   /// Whether an error is more than noise, and more than is worth a name.
-  [[nodiscard]] bool more_than_noise(const RecordStage& s, const Eigen::VectorXd& residual, double* ljung, double* runs,
-                                     double* lack) const {
+  [[nodiscard]] bool more_than_noise(const RecordStage& s, const Eigen::VectorXd& residual, double* ljung,
+                                     double* runs, double* lack) const {
     std::vector<Eigen::VectorXd> pieces;
     for (const ResidualPiece& p : data_.pieces) pieces.emplace_back(residual.segment(p.begin, p.size));
     const double l = ljung_box_p(pieces, 10), r = runs_p(pieces);
@@ -311,7 +315,8 @@ class Tracer {
     bool one = true;
     for (const ResidualPiece& p : data_.pieces) {
       const std::string& s = set_.records[p.record].channels[p.channel].sensor;
-      one = one && s == set_.records[data_.pieces.front().record].channels[data_.pieces.front().channel].sensor;
+      one =
+          one && s == set_.records[data_.pieces.front().record].channels[data_.pieces.front().channel].sensor;
       if (s == sensor) scale = p.scale;
     }
     return one ? 1.0 : scale;
@@ -383,15 +388,16 @@ class Tracer {
       bool null = true;
       for (std::size_t k = 0; k < current_.settings.size(); ++k) {
         const RecordSetting& s = current_.settings[k];
-        const bool own =
-            std::any_of(numbers.begin(), numbers.end(), [&](const RecordNumber& n) { return n.key == s.number.key; });
+        const bool own = std::any_of(numbers.begin(), numbers.end(),
+                                     [&](const RecordNumber& n) { return n.key == s.number.key; });
         if (!own) {
           without.push_back(s);
           continue;
         }
         const auto i = static_cast<Eigen::Index>(k);
         const double variance = i < current_.covariance.rows() ? current_.covariance(i, i) : 0.0;
-        null = null && std::abs(s.value - s.number.declared) <= half_width_95 * std::sqrt(std::max(0.0, variance));
+        null = null &&
+               std::abs(s.value - s.number.declared) <= half_width_95 * std::sqrt(std::max(0.0, variance));
       }
       bool needless = false;
       if (null) {
@@ -400,7 +406,8 @@ class Tracer {
         RecordFit fit = fit_motion(model_, data_, without, options);
         const double rows = std::max(1.0, static_cast<double>(data_.rows));
         const auto count = static_cast<double>(current_.settings.size() - without.size());
-        needless = fit.report.usable() && fit.chi2 - current_.chi2 <= count * std::log(rows) * current_.chi2 / rows;
+        needless =
+            fit.report.usable() && fit.chi2 - current_.chi2 <= count * std::log(rows) * current_.chi2 / rows;
         if (needless) current_ = std::move(fit);
       }
       if (!needless) {
@@ -438,7 +445,8 @@ class Tracer {
     const Reached base = kept.front();
     for (int number = 1; number <= set_.most_effects; ++number) {
       if (!go_on(fmt::format("round {}: {} effects", number, trace_.effects.size()))) return;
-      RoundInput input{model_, data_, current_, trace_.effects, trace_.selected_effects, options_.significance};
+      RoundInput input{
+          model_, data_, current_, trace_.effects, trace_.selected_effects, options_.significance};
       for (const ChannelError& e : trace_.base.errors)
         if (e.fitted) input.tolerance[e.sensor] = tolerance(e.sensor);
       input.progress = asked();
@@ -524,13 +532,14 @@ class Tracer {
     for (const RecordRound& round : trace_.rounds) {
       if (round.added.empty() || round.classes.empty()) continue;
       for (const std::vector<std::string>& members : round.classes) {
-        if (members.size() < 2 || std::find(members.begin(), members.end(), round.added) == members.end()) continue;
+        if (members.size() < 2 || std::find(members.begin(), members.end(), round.added) == members.end())
+          continue;
         trace_.next_separates = members;
         trace_.next_measurement.clear();
         for (const RecordEffect& e : trace_.effects)
           if (std::find(members.begin(), members.end(), e.label()) != members.end())
-            trace_.next_measurement +=
-                fmt::format("{}{}: {}", trace_.next_measurement.empty() ? "" : "; ", e.label(), e.independent_check);
+            trace_.next_measurement += fmt::format("{}{}: {}", trace_.next_measurement.empty() ? "" : "; ",
+                                                   e.label(), e.independent_check);
       }
     }
   }
@@ -543,12 +552,13 @@ class Tracer {
   ChannelScales scales_;
   RecordData data_, heldout_data_;
   std::vector<RecordSetting> base_settings_;
-  std::optional<std::vector<RecordSetting>> heldout_starts_;  // of the numbers of these records for themselves
-  Eigen::MatrixXd heldout_jacobian_;                          // there
+  std::optional<std::vector<RecordSetting>>
+      heldout_starts_;                // of the numbers of these records for themselves
+  Eigen::MatrixXd heldout_jacobian_;  // there
   RecordFit current_;
   std::vector<std::size_t> rounds_of_;  // of every selected effect the round that named it
   Eigen::VectorXd heldout_residual_;    // of the last stage
-  bool omnibus_ = false;                // what the base leaves is more than noise, whatever the effects' own tests say
+  bool omnibus_ = false;  // what the base leaves is more than noise, whatever the effects' own tests say
   RecordTrace trace_;
 };
 

@@ -12,6 +12,7 @@ struct RecordTraceOptions {
   bool effects = true;  ///< false: the base fit only
   double significance = 0.01;
   std::function<bool(const std::string& stage)> progress = {};  ///< false stops
+  std::function<bool()> stop = {};                              ///< asked during simulations, too; true stops
   std::function<void(const RecordTrace& part)> reached = {};    ///< whenever more of it is whole
 };
 

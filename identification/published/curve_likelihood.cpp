@@ -107,7 +107,8 @@ class NearZero {
   [[nodiscard]] AtZero operator()(double zero) const {
     if (!short_) return at_zero(cell_, curve_, zero);
     const double x = (zero - zero_) / half_, up = 0.5 * x * (x + 1.0), down = 0.5 * x * (x - 1.0);
-    AtZero at{down * below_.coefficients + (1.0 - x * x) * at_.coefficients + up * above_.coefficients, at_.change};
+    AtZero at{down * below_.coefficients + (1.0 - x * x) * at_.coefficients + up * above_.coefficients,
+              at_.change};
     at.off = std::max(0.0, down * below_.off + (1.0 - x * x) * at_.off + up * above_.off);
     return at;
   }
@@ -134,7 +135,8 @@ double best_zero(const FitCell& cell, const TouchCurve& curve, std::optional<dou
 
 Eigen::ArrayXd most_likelihoods(const FitCell& cell, const TouchCurve& curve, double zero,
                                 const Eigen::ArrayXd& log_sigma) {
-  if (!(least_zero(cell, curve) < largest_zero)) return Eigen::ArrayXd::Constant(log_sigma.size(), impossible);
+  if (!(least_zero(cell, curve) < largest_zero))
+    return Eigen::ArrayXd::Constant(log_sigma.size(), impossible);
   const double least = distance(cell, curve, zero);
   return -0.5 * least * (-2.0 * log_sigma).exp() - 3.0 * log_sigma + log_constant(cell);
 }
@@ -147,7 +149,8 @@ struct NormalRule {
 };
 NormalRule normal_rule() {
   const double inner = std::sqrt(5.0 - std::sqrt(10.0)), outer = std::sqrt(5.0 + std::sqrt(10.0));
-  const double w1 = std::log((7.0 + 2.0 * std::sqrt(10.0)) / 60.0), w2 = std::log((7.0 - 2.0 * std::sqrt(10.0)) / 60.0);
+  const double w1 = std::log((7.0 + 2.0 * std::sqrt(10.0)) / 60.0),
+               w2 = std::log((7.0 - 2.0 * std::sqrt(10.0)) / 60.0);
   return {{0.0, -inner, inner, -outer, outer}, {std::log(8.0 / 15.0), w1, w1, w2, w2}};
 }
 
@@ -171,7 +174,8 @@ Eigen::ArrayXd log_likelihoods(const FitCell& cell, const TouchCurve& curve, dou
     std::vector<double> terms;
     const auto add = [&](double z, double log_weight) {
       const AtZero at = near(z);
-      const double normal = -0.5 * (cell.numbers.coefficients - at.coefficients).squaredNorm() / (sigma * sigma);
+      const double normal =
+          -0.5 * (cell.numbers.coefficients - at.coefficients).squaredNorm() / (sigma * sigma);
       const double r2 =
           length_probability(cell.numbers.lower, cell.numbers.upper, components, at.off, log_sigma[s]).log;
       terms.push_back(normal + r2 + log_weight);

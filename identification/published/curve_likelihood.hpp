@@ -26,7 +26,8 @@ inline constexpr Eigen::Index scatters = 13;
 
 /// Zero of the travel at which the parabola of the computed curve is nearest to the published one [m]. near: an
 /// estimate from which the search begins; none: all zeros are searched. -largest_zero where the curve does not reach far enough.
-[[nodiscard]] double best_zero(const FitCell& cell, const TouchCurve& curve, std::optional<double> near = std::nullopt);
+[[nodiscard]] double best_zero(const FitCell& cell, const TouchCurve& curve,
+                               std::optional<double> near = std::nullopt);
 
 /// log p(A, B, C, R2 | curve, sigma) of a published fit in SI units [-], the zero z of the travel integrated out, one a scatter:
 ///   p = integral dz / (2 largest_zero) N(Q^T y; Q^T F(d - z), sigma^2 I) |d(Q^T y)/d(A, B, C)| P(R2 | q(z), sigma)

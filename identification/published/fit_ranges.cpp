@@ -47,7 +47,8 @@ FitCell fit_cell(const QuadraticLaw& law, double to, int readings) {
   return cell;
 }
 
-FitRanges::FitRanges(const std::vector<Series>& series, const std::vector<double>& touch, const Options& options)
+FitRanges::FitRanges(const std::vector<Series>& series, const std::vector<double>& touch,
+                     const Options& options)
     : options_(options) {
   for (const Series& s : series) laws_.push_back(*s.law);
   const auto edge = [&](int i) {
@@ -84,7 +85,8 @@ void FitRanges::fill() {
   edges_.clear();
   taut_.clear();
   edges_.push_back(at(std::vector<double>(laws_.size(), ranges_.front().from)));
-  for (const FitRange& range : ranges_) (range.kind == FitRange::Kind::common ? edges_ : taut_).push_back(at(range.to));
+  for (const FitRange& range : ranges_)
+    (range.kind == FitRange::Kind::common ? edges_ : taut_).push_back(at(range.to));
 }
 
 FitRanges FitRanges::of(const std::vector<QuadraticLaw>& laws) const {
@@ -103,8 +105,9 @@ double FitRanges::longest() const {
 double FitRanges::mass(std::size_t range, bool uniform) const {
   const double taut = taut_.empty() ? 0.0 : 0.5, counts = static_cast<double>(options_.readings.size());
   if (range >= bins()) return taut / static_cast<double>(taut_.size()) / counts;
-  const double share = uniform ? (ranges_[range].to[0] - ranges_[range].from) / (options_.most - options_.least)
-                               : 1.0 / static_cast<double>(bins());
+  const double share = uniform
+                           ? (ranges_[range].to[0] - ranges_[range].from) / (options_.most - options_.least)
+                           : 1.0 / static_cast<double>(bins());
   return (1.0 - taut) * share / counts;
 }
 

@@ -65,20 +65,24 @@ std::vector<Hypothesis> published_hypotheses() {
       one("rope", "the wire is a rope: both stiffnesses are others", {bending, axial}),
       one("rope_of_another_length", "the wire is a rope of another length", {bending, axial, length}),
       one("mounts_give_and_length", "the mounts give way, another length", {mounts_give, length}),
-      one("mounts_give_and_bending", "the mounts give way, another bending stiffness", {mounts_give, bending}),
+      one("mounts_give_and_bending", "the mounts give way, another bending stiffness",
+          {mounts_give, bending}),
       one("mounts_give_and_turn", "the mounts give way and turn", {mounts_give, clamps_turn}),
       one("mounts_give_and_friction", "the mounts give way, the pusher rubs", {mounts_give, friction}),
-      one("mounts_give_and_slip", "the mounts give way, the wire slips", {mounts_give, slip("mount_slip.tension_N")}),
+      one("mounts_give_and_slip", "the mounts give way, the wire slips",
+          {mounts_give, slip("mount_slip.tension_N")}),
       one("slip_and_friction", "the wire slips, the pusher rubs", {slip("mount_slip.tension_N"), friction}),
   };
 }
 
-double more_compliance(const Experiment& experiment, const Hypothesis& hypothesis, const std::vector<double>& values) {
+double more_compliance(const Experiment& experiment, const Hypothesis& hypothesis,
+                       const std::vector<double>& values) {
   const wire::WireSpecification& wire = experiment.series.front().test.wire;
   double more = 0.0;
   for (std::size_t j = 0; j < values.size(); ++j) {
     if (hypothesis.numbers[j].key == mounts_give.key) more += 2.0 * values[j];
-    if (hypothesis.numbers[j].key == axial.key) more += wire.length / wire.axial_stiffness() * (1.0 / values[j] - 1.0);
+    if (hypothesis.numbers[j].key == axial.key)
+      more += wire.length / wire.axial_stiffness() * (1.0 / values[j] - 1.0);
   }
   return more;
 }

@@ -33,7 +33,8 @@ std::vector<Series> long_pushes(std::vector<Series> series, double reach) {
 }
 
 /// The computed force of each series as far as it could be followed.
-std::vector<TouchCurve> touch_curves(const std::vector<Prediction>& predictions, const std::vector<Series>& series) {
+std::vector<TouchCurve> touch_curves(const std::vector<Prediction>& predictions,
+                                     const std::vector<Series>& series) {
   std::vector<TouchCurve> curves;
   for (std::size_t k = 0; k < series.size(); ++k) {
     const std::vector<double>& force = predictions[k].force;
@@ -60,7 +61,8 @@ double of_parabolas(const FitRanges& ranges) {
         for (std::size_t k = 0; k < ranges.series(); ++k) {
           const FitCell& cell = cells.cell(n, k);
           const auto components = static_cast<double>(cell.basis.cols() - 3);
-          sum += length_probability(cell.numbers.lower, cell.numbers.upper, components, 0.0, cell.log_scatter).log -
+          sum += length_probability(cell.numbers.lower, cell.numbers.upper, components, 0.0, cell.log_scatter)
+                     .log -
                  3.0 * cell.log_scatter + cell.log_scale;
         }
         best = std::max(best, sum);
@@ -82,7 +84,8 @@ double fit_statistic(const FitRanges& ranges, const std::vector<std::vector<Touc
 class Computed {
  public:
   Computed(const Experiment& experiment, const FitRanges& ranges, const Hypothesis& hypothesis, int elements)
-      : hypothesis_(hypothesis), model_(pushes(experiment, ranges, hypothesis), solver(experiment, elements)) {}
+      : hypothesis_(hypothesis),
+        model_(pushes(experiment, ranges, hypothesis), solver(experiment, elements)) {}
 
   [[nodiscard]] std::vector<double> values(const VectorXd& u) const {
     std::vector<double> result;
@@ -205,8 +208,9 @@ HypothesisMap HypothesisSampling::map() const {
     }
     const FitRange& range = ranges_.ranges()[c / columns_];
     const double to = best_to_[best][c];
-    MapCell cell{c / columns_,   c % columns_,  log_sum(terms),
-                 logs_[best][c], values_[best], to > 0.0 ? std::vector<double>(ranges_.series(), to) : range.to};
+    MapCell cell{c / columns_,   c % columns_,
+                 log_sum(terms), logs_[best][c],
+                 values_[best],  to > 0.0 ? std::vector<double>(ranges_.series(), to) : range.to};
     for (int prior = 0; prior < 2; ++prior)
       evidence[prior].push_back(cell.log_evidence + std::log(ranges_.mass(cell.range, prior == 1)));
     map.cells.push_back(std::move(cell));
@@ -214,8 +218,10 @@ HypothesisMap HypothesisSampling::map() const {
   for (int prior = 0; prior < 2; ++prior) map.log_evidence[prior] = log_sum(evidence[prior]);
   constexpr double nothing = 15.0;  // e^-15 of the evidence
   for (std::size_t s = 0; s < logs_.size(); ++s) {
-    PosteriorPoint point{values_[s], {log_weight[s] + over_ranges(s, false), log_weight[s] + over_ranges(s, true)}};
-    if (point.log_weight[0] > map.log_evidence[0] - nothing || point.log_weight[1] > map.log_evidence[1] - nothing)
+    PosteriorPoint point{values_[s],
+                         {log_weight[s] + over_ranges(s, false), log_weight[s] + over_ranges(s, true)}};
+    if (point.log_weight[0] > map.log_evidence[0] - nothing ||
+        point.log_weight[1] > map.log_evidence[1] - nothing)
       map.posterior.push_back(std::move(point));
   }
   map.likely = likely(leading_cell(map, ranges_));
@@ -237,8 +243,9 @@ std::vector<std::vector<double>> HypothesisSampling::likely(const MapCell& leadi
 }  // namespace
 
 const MapCell& leading_cell(const HypothesisMap& map, const FitRanges& ranges) {
-  return *std::ranges::max_element(
-      map.cells, {}, [&](const MapCell& c) { return c.log_evidence + std::log(ranges.mass(c.range, false)); });
+  return *std::ranges::max_element(map.cells, {}, [&](const MapCell& c) {
+    return c.log_evidence + std::log(ranges.mass(c.range, false));
+  });
 }
 
 double published_p(const Experiment& experiment, const FitRanges& ranges, const HypothesisMap& map,
@@ -265,7 +272,8 @@ double published_p(const Experiment& experiment, const FitRanges& ranges, const 
       const double zero = *zeros[k];
       VectorXd force(cell.basis.cols());
       for (Index j = 0; j < force.size(); ++j)
-        force[j] = truth[k].force.value(std::max(0.0, cell.travel[static_cast<std::size_t>(j)] - zero)) + noise(random);
+        force[j] = truth[k].force.value(std::max(0.0, cell.travel[static_cast<std::size_t>(j)] - zero)) +
+                   noise(random);
       laws.push_back(printed_law(cell.travel, force, experiment.series[k].law->r_squared_digits));
     }
     as_far[i] = fit_statistic(ranges.of(laws), likely) <= observed ? 1 : 0;
@@ -287,13 +295,16 @@ FitRanges fit_ranges(const Experiment& experiment, const MapOptions& options) {
   std::vector<Series> series = experiment.series;
   for (Series& s : series) s.test.travel = {0.0, 1e-4, 2e-4, 3e-4};
   std::vector<double> touch;
-  for (const Prediction& p : predict_all(series, experiment.solver)) touch.push_back(p.curve.curve.natural_height);
+  for (const Prediction& p : predict_all(series, experiment.solver))
+    touch.push_back(p.curve.curve.natural_height);
   return {experiment.series, touch, options.ranges};
 }
 
 std::vector<HypothesisMap> published_map(const Experiment& experiment, const FitRanges& ranges,
-                                         const std::vector<Hypothesis>& hypotheses, const MapOptions& options) {
-  constexpr double rival = 12.0;  // of the logarithm of the evidence: hypotheses farther behind need no precision
+                                         const std::vector<Hypothesis>& hypotheses,
+                                         const MapOptions& options) {
+  constexpr double rival =
+      12.0;  // of the logarithm of the evidence: hypotheses farther behind need no precision
   bool stopped = false;
   double leading = impossible;
   const auto goes_on = [&](const std::string& stage) {

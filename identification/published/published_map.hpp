@@ -21,7 +21,8 @@ struct PriorNumber {
 struct Hypothesis {
   std::string name;     ///< "mount_axial_compliance"
   std::string meaning;  ///< "the mounts give way along the wire"
-  std::string family;   ///< of hypotheses that do the same to published fits: "along_the_wire"; else its own name
+  std::string
+      family;  ///< of hypotheses that do the same to published fits: "along_the_wire"; else its own name
   std::vector<PriorNumber> numbers;
   void (*change)(coupling::PushProblem&) = nullptr;  ///< of the declared test, or null
 };
@@ -31,8 +32,9 @@ struct Hypothesis {
 /// What a hypothesis makes of the published fits at one range and number of readings.
 struct MapCell {
   std::size_t range = 0, readings = 0;
-  double log_evidence = 0.0;   ///< numbers, zeros and scatter integrated out, the mean over a bin of ranges [-]
-  double log_best = 0.0;       ///< largest over the numbers, zeros and scatter integrated out [-]
+  double log_evidence =
+      0.0;                ///< numbers, zeros and scatter integrated out, the mean over a bin of ranges [-]
+  double log_best = 0.0;  ///< largest over the numbers, zeros and scatter integrated out [-]
   std::vector<double> values;  ///< of the numbers there, SI
   std::vector<double> to;      ///< the range there, one a series [m]
 };
@@ -46,7 +48,8 @@ struct HypothesisMap {
   std::vector<MapCell> cells;
   std::vector<PosteriorPoint> posterior;
   double effective = 0.0;  ///< computed tests that count: the evidence is known to one part in its root
-  std::vector<std::vector<double>> likely;  ///< numbers of the computed tests with most weight, the first of all
+  std::vector<std::vector<double>>
+      likely;  ///< numbers of the computed tests with most weight, the first of all
   double log_evidence[2] = {
       0.0, 0.0};  ///< ranges and numbers integrated out: ranges even in their logarithm, and in themselves
   double probability[2] = {0.0, 0.0};  ///< among all hypotheses
@@ -80,8 +83,8 @@ inline constexpr const char* along_the_wire = "along_the_wire";
 /// P [-] that published fits which this hypothesis made, at its leading range and number of readings, are as far from it as these: by a
 /// parametric bootstrap of T = max log p(numbers | hypothesis) - max log p(numbers | parabolas, a scatter each), both over ranges and numbers
 /// of readings, the former also over `likely` numbers of the test. A multiple of 1 / (replicates + 1).
-[[nodiscard]] double published_p(const Experiment& experiment, const FitRanges& ranges, const HypothesisMap& map,
-                                 const MapOptions& options, int replicates);
+[[nodiscard]] double published_p(const Experiment& experiment, const FitRanges& ranges,
+                                 const HypothesisMap& map, const MapOptions& options, int replicates);
 
 /// The cell with most posterior mass, common ranges even in their logarithm.
 [[nodiscard]] const MapCell& leading_cell(const HypothesisMap& map, const FitRanges& ranges);

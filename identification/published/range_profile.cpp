@@ -60,8 +60,8 @@ std::vector<double> CommonRanges::by_readings(const FitCells& cells) const {
 /// Index of the interval (i, i + 1) that is to be halved next: next to the best node until p hardly changes, and wherever p matters.
 std::optional<std::size_t> next_to_halve(const std::vector<Node>& nodes, double matters) {
   constexpr double next_to_best = 0.5, anywhere = 1.0, narrow = 1e-4, far = 1e3;
-  const auto best =
-      static_cast<std::size_t>(std::distance(nodes.begin(), std::ranges::max_element(nodes, {}, &Node::largest)));
+  const auto best = static_cast<std::size_t>(
+      std::distance(nodes.begin(), std::ranges::max_element(nodes, {}, &Node::largest)));
   std::optional<std::size_t> found;
   double largest_change = 0.0;
   for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
@@ -83,7 +83,8 @@ std::vector<Node> CommonRanges::nodes() const {
   constexpr double worth = 20.0;      // of the logarithm of a guide, below the best one
   constexpr double matters = 8.0;     // of the logarithm of p
   std::vector<Node> nodes;
-  for (const FitCells& edge : ranges_.edges()) nodes.push_back({std::log(edge.to.front()), guide(edge, medium_), {}});
+  for (const FitCells& edge : ranges_.edges())
+    nodes.push_back({std::log(edge.to.front()), guide(edge, medium_), {}});
   const auto halve = [&](std::size_t i) {
     const double log_to = 0.5 * (nodes[i].log_to + nodes[i + 1].log_to);
     const FitCells medium = ranges_.at(std::vector<double>(ranges_.series(), std::exp(log_to)), medium_);
@@ -115,8 +116,9 @@ ByScatter by_scatter(const FitCells& cells, std::size_t readings, const std::vec
   double centre = 0.0;
   for (std::size_t k = 0; k < curves.size(); ++k)
     centre += cells.cell(readings, k).log_scatter / static_cast<double>(curves.size());
-  ByScatter all{centre + first_scatter + scatter_step * Eigen::ArrayXd::LinSpaced(scatters, 0.0, scatters - 1.0),
-                Eigen::ArrayXd::Constant(scatters, impossible)};
+  ByScatter all{
+      centre + first_scatter + scatter_step * Eigen::ArrayXd::LinSpaced(scatters, 0.0, scatters - 1.0),
+      Eigen::ArrayXd::Constant(scatters, impossible)};
   Eigen::ArrayXd most = Eigen::ArrayXd::Zero(scatters);
   for (std::size_t k = 0; k < curves.size(); ++k) {
     const FitCell& cell = cells.cell(readings, k);

@@ -11,7 +11,8 @@ struct ByScatter {
   double most = 0.0;         ///< the largest that `log` can be
 };
 /// zeros: of the travel [m], one a series, replaced; the ones given are estimates. What is below `floor` is not computed: impossible.
-[[nodiscard]] ByScatter by_scatter(const FitCells& cells, std::size_t readings, const std::vector<TouchCurve>& curves,
+[[nodiscard]] ByScatter by_scatter(const FitCells& cells, std::size_t readings,
+                                   const std::vector<TouchCurve>& curves,
                                    std::vector<std::optional<double>>& zeros, double floor);
 
 /// What computed curves make of published fits over all ranges, zeros and scatter (even in its logarithm, Jeffreys) integrated out.
@@ -26,6 +27,7 @@ struct RangeProfile {
 /// The profile of curves, one a series; none (no curves): all is impossible. Bins are divided where p changes by more than a factor e
 /// and matters: fits that rest on many readings know their range to a few parts in a thousand. Below `floor` log p stands for what it is
 /// at most.
-[[nodiscard]] RangeProfile range_profile(const FitRanges& ranges, const std::vector<TouchCurve>& curves, double floor);
+[[nodiscard]] RangeProfile range_profile(const FitRanges& ranges, const std::vector<TouchCurve>& curves,
+                                         double floor);
 
 }  // namespace snare::identification

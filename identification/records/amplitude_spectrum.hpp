@@ -14,6 +14,7 @@ struct AmplitudeSpectrum {
 ///   a_k = 2/n |sum_i (x_i - mean) exp(-2 pi i f_k t_i)|,  f_k = k/(t_n - t_1).
 /// times: (n) [s], ascending. Up to half a cycle a reading, at most 400 frequencies, of a million readings 40. Nothing of fewer than eight
 /// readings, or where all times are one.
-[[nodiscard]] AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& times, const Eigen::VectorXd& values);
+[[nodiscard]] AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& times,
+                                                   const Eigen::VectorXd& values);
 
 }  // namespace snare::identification

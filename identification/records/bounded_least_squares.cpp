@@ -17,9 +17,10 @@ constexpr double most_damping = 1e6;
 constexpr double another =
     0.3;  // of a step that failed, in what it promises to change: what differs less fails as well
 constexpr int most_tries = 12;
-constexpr double next_to_minimum = 0.1;  // of the fall by chance: a third of a standard error, and a step leads nearer
-constexpr int small_falls_to_end = 2;    // one alone may be a step that was held back
-constexpr double poor_fall = 0.5;        // of what was promised: the derivatives are no longer those of this place
+constexpr double next_to_minimum =
+    0.1;  // of the fall by chance: a third of a standard error, and a step leads nearer
+constexpr int small_falls_to_end = 2;  // one alone may be a step that was held back
+constexpr double poor_fall = 0.5;  // of what was promised: the derivatives are no longer those of this place
 
 /// Broyden's correction, row by row: the least change, in columns over their norms, with which J tells what the step has shown. What is nought stays
 /// so: a reading that does not hang on a number. A row is left as it is where hardly anything moved on which it hangs.      theory.md (I.28)
@@ -77,8 +78,8 @@ Eigen::VectorXd step_within(const BoundedProblem& problem, const Eigen::VectorXd
 
 }  // namespace
 
-BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::VectorXd& start, int max_iterations,
-                                    double tolerance) {
+BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::VectorXd& start,
+                                    int max_iterations, double tolerance) {
   BoundedResult result;
   result.x = start.cwiseMax(problem.lower).cwiseMin(problem.upper);
   Eigen::VectorXd r = problem.residual(result.x);
@@ -128,7 +129,8 @@ BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::
         const Eigen::VectorXd moved = result.x + step_within(problem, result.x, r, J, held, damping);
         there = moved.cwiseMax(problem.lower).cwiseMin(problem.upper);
         step = there - result.x;
-        if (attempt == 0 || norms.cwiseProduct(step - failed).norm() > another * norms.cwiseProduct(failed).norm())
+        if (attempt == 0 ||
+            norms.cwiseProduct(step - failed).norm() > another * norms.cwiseProduct(failed).norm())
           break;
         damping *= 10.0;
       }

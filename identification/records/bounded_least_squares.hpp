@@ -25,7 +25,7 @@ struct BoundedProblem {
 
 /// Why the iteration ended.
 enum class BoundedEnd {
-  converged,        ///< the last step lowered the sum by less than its share `tolerance`, or no step lowers it
+  converged,  ///< the last step lowered the sum by less than its share `tolerance`, or no step lowers it
   iteration_limit,  ///< it may fall further
   stopped,          ///< by `progress`
   no_start          ///< no residual at the start
@@ -34,8 +34,9 @@ enum class BoundedEnd {
 /// Where it came to.
 struct BoundedResult {
   Eigen::VectorXd x;
-  Eigen::MatrixXd jacobian;  ///< the last one that was used: asked for at x or near it, and corrected on the way
-  double chi2 = 0.0;         ///< sum of squares, a number without unit
+  Eigen::MatrixXd
+      jacobian;       ///< the last one that was used: asked for at x or near it, and corrected on the way
+  double chi2 = 0.0;  ///< sum of squares, a number without unit
   int iterations = 0;
   BoundedEnd end = BoundedEnd::converged;
 };

@@ -66,7 +66,8 @@ Autoregression burg(const std::vector<Eigen::VectorXd>& stretches) {
 ColouredNoise coloured_noise(const RecordData& data, const Eigen::VectorXd& residual, Eigen::Index taken) {
   std::map<std::string, std::vector<Eigen::VectorXd>> by_sensor;
   for (const ResidualPiece& p : data.pieces)
-    by_sensor[data.set->records[p.record].channels[p.channel].sensor].emplace_back(residual.segment(p.begin, p.size));
+    by_sensor[data.set->records[p.record].channels[p.channel].sensor].emplace_back(
+        residual.segment(p.begin, p.size));
   std::map<std::string, Autoregression> fitted;
   const auto n = static_cast<double>(residual.size());
   const double given_back = std::sqrt(n / std::max(1.0, n - static_cast<double>(taken)));
@@ -80,7 +81,8 @@ ColouredNoise coloured_noise(const RecordData& data, const Eigen::VectorXd& resi
   return noise;
 }
 
-Eigen::VectorXd whitened(const RecordData& data, const ColouredNoise& noise, const Eigen::VectorXd& residual) {
+Eigen::VectorXd whitened(const RecordData& data, const ColouredNoise& noise,
+                         const Eigen::VectorXd& residual) {
   Eigen::VectorXd white(residual.size());
   for (std::size_t k = 0; k < data.pieces.size(); ++k) {
     const ResidualPiece& p = data.pieces[k];
@@ -112,7 +114,8 @@ Eigen::MatrixXd coloured(const RecordData& data, const ColouredNoise& noise, con
   return result;
 }
 
-Eigen::MatrixXd sandwich(const RecordData& data, const ColouredNoise& noise, const Eigen::MatrixXd& jacobian) {
+Eigen::MatrixXd sandwich(const RecordData& data, const ColouredNoise& noise,
+                         const Eigen::MatrixXd& jacobian) {
   const Eigen::Index n = jacobian.cols();
   if (n == 0) return {};
   Eigen::VectorXd norms = jacobian.colwise().norm().transpose();

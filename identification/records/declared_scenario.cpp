@@ -61,7 +61,8 @@ const TomlNode* DeclaredScenario::find(const std::string& key) const {
 
 std::optional<double> DeclaredScenario::number(const std::string& key) const {
   const TomlNode* found = find(key);
-  return found != nullptr && found->kind == TomlNode::Kind::number ? std::optional(found->number) : std::nullopt;
+  return found != nullptr && found->kind == TomlNode::Kind::number ? std::optional(found->number)
+                                                                   : std::nullopt;
 }
 
 std::string DeclaredScenario::key_of(const std::string& key) const {
@@ -76,7 +77,8 @@ std::string DeclaredScenario::key_of(const std::string& key) const {
 
 std::optional<double> StandingNumbers::number(const std::string& key) const {
   for (const std::string& one : {key, declared.key_of(key)}) {
-    const auto last = std::find_if(set.rbegin(), set.rend(), [&](const base::Override& o) { return o.key == one; });
+    const auto last =
+        std::find_if(set.rbegin(), set.rend(), [&](const base::Override& o) { return o.key == one; });
     double value = 0.0;
     if (last == set.rend()) continue;
     const char* const end = last->value.data() + last->value.size();
@@ -95,7 +97,8 @@ std::vector<std::string> DeclaredScenario::names(const std::string& list) const 
   std::vector<std::string> names;
   const TomlNode* found = follow(&scenario, list);
   if (found == nullptr) return names;
-  for (std::size_t i = 0; i < found->items.size(); ++i) names.push_back(base::element_label(found->items[i], i));
+  for (std::size_t i = 0; i < found->items.size(); ++i)
+    names.push_back(base::element_label(found->items[i], i));
   return names;
 }
 
@@ -117,7 +120,8 @@ DeclaredScenario declared_scenario(const RecordSet& set, const std::vector<base:
       const std::string name = base::element_label(arms->items[k], k);
       declared.arms[name] = parse(set.scenario.parent_path() / file->text);
       if (const auto found = of_arms.find(name); found != of_arms.end())
-        for (const base::Override& one : found->second) base::apply_override(declared.arms[name], one, problems);
+        for (const base::Override& one : found->second)
+          base::apply_override(declared.arms[name], one, problems);
     }
   }
   if (!problems.empty()) throw base::InputError(problems);

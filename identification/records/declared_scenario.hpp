@@ -39,6 +39,7 @@ struct StandingNumbers {
 };
 
 /// Reads the files, with keys that are otherwise for all records and `more` of them. Throws InputError.
-[[nodiscard]] DeclaredScenario declared_scenario(const RecordSet& set, const std::vector<base::Override>& more = {});
+[[nodiscard]] DeclaredScenario declared_scenario(const RecordSet& set,
+                                                 const std::vector<base::Override>& more = {});
 
 }  // namespace snare::identification

@@ -28,7 +28,8 @@ bool at_bound(const RecordSetting& s) {
 double rise_unit(const RecordData& data, const RecordFit& fit, Eigen::Index number) {
   std::vector<Eigen::Index> others;
   for (Eigen::Index k = 0; k < fit.jacobian.cols(); ++k)
-    if (k != number && fit.jacobian.col(k).norm() > 0.0 && !at_bound(fit.settings[static_cast<std::size_t>(k)]))
+    if (k != number && fit.jacobian.col(k).norm() > 0.0 &&
+        !at_bound(fit.settings[static_cast<std::size_t>(k)]))
       others.push_back(k);
   Eigen::VectorXd g = fit.jacobian.col(number);
   if (!others.empty()) {

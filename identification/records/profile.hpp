@@ -13,7 +13,8 @@ namespace snare::identification {
 /// Where a number is held, and how much worse the others, fitted anew, leave it.
 struct ProfilePoint {
   double value = 0.0;  ///< in the unit of its key
-  double rise = 0.0;   ///< of the sum of squares over its variance by noise alone: of one degree of freedom, >= 0 [-]
+  double rise =
+      0.0;  ///< of the sum of squares over its variance by noise alone: of one degree of freedom, >= 0 [-]
 };
 
 /// What a profile ended at on one side.
@@ -26,7 +27,8 @@ enum class ProfileEnd {
 
 /// One side of a profile.
 struct ProfileSide {
-  std::optional<double> limit;  ///< of 95 %, in the unit of the key; absent unless it was crossed or is a bound
+  std::optional<double>
+      limit;  ///< of 95 %, in the unit of the key; absent unless it was crossed or is a bound
   ProfileEnd end = ProfileEnd::open;
 };
 
@@ -36,7 +38,8 @@ struct Profile {
   double value = 0.0;  ///< of the fit, in the unit of the key
   ProfileSide lower, upper;
   std::vector<ProfilePoint> points;  ///< ascending in their values, that of the fit among them
-  double fall = 0.0;  ///< largest below the fit that was met on the way, as `rise`: > 0, the fit was not the minimum
+  double fall =
+      0.0;  ///< largest below the fit that was met on the way, as `rise`: > 0, the fit was not the minimum
   long simulations = 0;
 };
 

@@ -12,10 +12,12 @@ namespace snare::identification {
 
 namespace {
 
-constexpr double most_at_end = 0.5;  ///< share of the readings that may stand at the largest or the smallest value
-constexpr std::size_t longest_chance_run = 4;  ///< readings at an end of the range that noise never makes the same
-constexpr double most_beyond = 4.0;            ///< steps of the sensor: a turn that its steps hide is one at most
-constexpr double usual_gaps = 20.0;            ///< times the median interval
+constexpr double most_at_end =
+    0.5;  ///< share of the readings that may stand at the largest or the smallest value
+constexpr std::size_t longest_chance_run =
+    4;                               ///< readings at an end of the range that noise never makes the same
+constexpr double most_beyond = 4.0;  ///< steps of the sensor: a turn that its steps hide is one at most
+constexpr double usual_gaps = 20.0;  ///< times the median interval
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -58,11 +60,12 @@ double beyond(const std::vector<double>& values, std::size_t first, std::size_t 
 }
 
 /// Problems of the times, a few of each kind.
-void check_times(const RecordCsv& csv, const std::vector<double>& times, std::vector<base::InputProblem>& problems) {
+void check_times(const RecordCsv& csv, const std::vector<double>& times,
+                 std::vector<base::InputProblem>& problems) {
   constexpr std::size_t most_told = 3;
   const auto tell = [&](double time, std::string requirement) {
-    problems.push_back(
-        {csv.file.string(), 0, csv.time_column, fmt::format("{:.9g}", time + csv.clock), std::move(requirement)});
+    problems.push_back({csv.file.string(), 0, csv.time_column, fmt::format("{:.9g}", time + csv.clock),
+                        std::move(requirement)});
   };
   std::size_t told = 0;
   std::vector<double> steps;
@@ -75,17 +78,17 @@ void check_times(const RecordCsv& csv, const std::vector<double>& times, std::ve
                        : fmt::format("comes after {:.9g}: times must ascend", times[k - 1] + csv.clock));
   }
   if (!times.empty() && times.front() < -1e-9)
-    tell(times.front(), fmt::format("must not be before clock_s = {:.9g}, when the scenario begins", csv.clock));
+    tell(times.front(),
+         fmt::format("must not be before clock_s = {:.9g}, when the scenario begins", csv.clock));
   if (told > 0 || steps.empty()) return;
   const double usual = median(steps);
   const double most = csv.most_gap.value_or(usual_gaps * usual);
   for (std::size_t k = 0; k < steps.size() && told < most_told; ++k) {
     if (steps[k] <= most) continue;
     ++told;
-    tell(times[k + 1],
-         fmt::format(
-             "comes {:.6g} s after the reading before, usual are {:.6g} s: part the record, or declare longest_gap_s",
-             steps[k], usual));
+    tell(times[k + 1], fmt::format("comes {:.6g} s after the reading before, usual are {:.6g} s: part the "
+                                   "record, or declare longest_gap_s",
+                                   steps[k], usual));
   }
 }
 
@@ -99,13 +102,16 @@ void check_values(const RecordCsv& csv, const std::string& column, const std::ve
   for (const double end : {*low, *high}) {
     const auto count = std::count(values.begin(), values.end(), end);
     if (static_cast<double>(count) > most_at_end * static_cast<double>(values.size()))
-      tell(end, fmt::format("{} of {} readings stand at this end of the range: the sensor was saturated or at rest",
-                            count, values.size()));
+      tell(end, fmt::format(
+                    "{} of {} readings stand at this end of the range: the sensor was saturated or at rest",
+                    count, values.size()));
     else if (const auto [first, run] = longest_run(values, end);
              run >= longest_chance_run && beyond(values, first, run) > most_beyond * resolution(values))
-      tell(end, fmt::format("{} readings one after the other stand at this end of the range, at which the signal came "
-                            "at full rate: the sensor was saturated, leave these out by from_s and to_s",
-                            run));
+      tell(end,
+           fmt::format(
+               "{} readings one after the other stand at this end of the range, at which the signal came "
+               "at full rate: the sensor was saturated, leave these out by from_s and to_s",
+               run));
   }
 }
 
@@ -117,7 +123,8 @@ void thin_out(const RecordCsv& csv, RecordReadings& readings, std::vector<base::
     constexpr double even = 0.01;  // share of the interval
     double off = 0.0;
     for (std::size_t k = 0; k < count; ++k)
-      off = std::max(off, std::abs(readings.times[k] - readings.times.front() - static_cast<double>(k) * interval));
+      off = std::max(
+          off, std::abs(readings.times[k] - readings.times.front() - static_cast<double>(k) * interval));
     const auto tell = [&](std::string requirement) {
       problems.push_back(
           {csv.file.string(), 0, "lowpass_Hz", fmt::format("{:.6g}", csv.cutoff), std::move(requirement)});
@@ -126,7 +133,8 @@ void thin_out(const RecordCsv& csv, RecordReadings& readings, std::vector<base::
     if (!(csv.cutoff * interval < 0.5))
       return tell(fmt::format("must be below half the rate of the readings, {:.6g} Hz", 0.5 / interval));
     readings.filter.cutoff = csv.cutoff;
-    readings.filter.times = Eigen::Map<const Eigen::VectorXd>(readings.times.data(), static_cast<Eigen::Index>(count));
+    readings.filter.times =
+        Eigen::Map<const Eigen::VectorXd>(readings.times.data(), static_cast<Eigen::Index>(count));
     for (std::vector<double>& column : readings.values) {
       const Eigen::Map<Eigen::VectorXd> values(column.data(), static_cast<Eigen::Index>(count));
       const Eigen::VectorXd filtered = low_passed(values, interval, csv.cutoff);
@@ -135,7 +143,8 @@ void thin_out(const RecordCsv& csv, RecordReadings& readings, std::vector<base::
   }
   const auto thin = [&](std::vector<double>& values) {
     std::size_t kept = 0;
-    for (std::size_t k = 0; k < values.size(); k += static_cast<std::size_t>(csv.every)) values[kept++] = values[k];
+    for (std::size_t k = 0; k < values.size(); k += static_cast<std::size_t>(csv.every))
+      values[kept++] = values[k];
     values.resize(kept);
   };
   for (std::size_t k = 0; k < count; k += static_cast<std::size_t>(csv.every))
@@ -161,13 +170,15 @@ RecordReadings read_record_csv(const RecordCsv& csv) {
     const double time = table.columns[0][i];
     if (!taken || time < csv.from || time > csv.to) continue;
     readings.times.push_back(time - csv.clock);
-    for (std::size_t c = 0; c < csv.columns.size(); ++c) readings.values[c].push_back(table.columns[1 + c][i]);
+    for (std::size_t c = 0; c < csv.columns.size(); ++c)
+      readings.values[c].push_back(table.columns[1 + c][i]);
   }
   std::vector<base::InputProblem> problems;
   const auto few = [&] {
     if (readings.times.size() >= fewest_readings) return false;
-    problems.push_back({csv.file.string(), 0, "", "",
-                        fmt::format("{} readings, must be at least {}", readings.times.size(), fewest_readings)});
+    problems.push_back(
+        {csv.file.string(), 0, "", "",
+         fmt::format("{} readings, must be at least {}", readings.times.size(), fewest_readings)});
     return true;
   };
   if (!few()) {
@@ -187,8 +198,8 @@ std::vector<std::string> read_into(const std::function<RecordReadings()>& read, 
   std::vector<std::string> problems;
   try {
     const RecordReadings readings = read();
-    record.times =
-        Eigen::Map<const Eigen::VectorXd>(readings.times.data(), static_cast<Eigen::Index>(readings.times.size()));
+    record.times = Eigen::Map<const Eigen::VectorXd>(readings.times.data(),
+                                                     static_cast<Eigen::Index>(readings.times.size()));
     record.filter = readings.filter;
     for (std::size_t c = 0; c < record.channels.size(); ++c)
       record.channels[c].values = Eigen::Map<const Eigen::VectorXd>(

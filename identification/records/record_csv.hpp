@@ -16,13 +16,14 @@ namespace snare::identification {
 struct RecordCsv {
   std::filesystem::path file;
   std::string time_column = "time_s";
-  std::vector<std::pair<std::string, double>> columns;  ///< with the factor that leads to the unit of the sensor
-  std::vector<std::pair<std::string, double>> rows;     ///< only those in which this column has this value
+  std::vector<std::pair<std::string, double>>
+      columns;                                       ///< with the factor that leads to the unit of the sensor
+  std::vector<std::pair<std::string, double>> rows;  ///< only those in which this column has this value
   double from = -std::numeric_limits<double>::infinity(),
          to = std::numeric_limits<double>::infinity();  ///< of the file's clock [s]
-  double clock = 0.0;                                   ///< time of the file's clock at which the scenario begins [s]
-  int every = 1;                                        ///< of the rows that are left, each of so many
-  double cutoff = 0.0;                                  ///< of a low-pass filter before [Hz]; 0: none
+  double clock = 0.0;              ///< time of the file's clock at which the scenario begins [s]
+  int every = 1;                   ///< of the rows that are left, each of so many
+  double cutoff = 0.0;             ///< of a low-pass filter before [Hz]; 0: none
   std::optional<double> most_gap;  ///< longest time between two readings [s]; absent: 20 times the usual
 };
 

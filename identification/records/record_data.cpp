@@ -7,7 +7,8 @@ namespace snare::identification {
 
 namespace {
 
-Eigen::VectorXd stacked(const RecordData& data, const std::vector<RecordPrediction>& predictions, bool residual) {
+Eigen::VectorXd stacked(const RecordData& data, const std::vector<RecordPrediction>& predictions,
+                        bool residual) {
   Eigen::VectorXd all(data.rows);
   for (const ResidualPiece& piece : data.pieces) {
     const RecordPrediction& p = predictions[data.place_of(piece.record)];
@@ -35,12 +36,14 @@ Eigen::VectorXd RecordData::signal(const std::vector<RecordPrediction>& predicti
   return stacked(*this, predictions, false);
 }
 
-std::vector<RecordSetting> together(std::vector<RecordSetting> settings, const std::vector<RecordSetting>& fixed) {
+std::vector<RecordSetting> together(std::vector<RecordSetting> settings,
+                                    const std::vector<RecordSetting>& fixed) {
   settings.insert(settings.end(), fixed.begin(), fixed.end());
   return settings;
 }
 
-RecordData record_data(const RecordSet& set, const std::vector<std::size_t>& records, const ChannelScales& scales) {
+RecordData record_data(const RecordSet& set, const std::vector<std::size_t>& records,
+                       const ChannelScales& scales) {
   RecordData data;
   data.set = &set;
   data.records = records;
@@ -48,7 +51,8 @@ RecordData record_data(const RecordSet& set, const std::vector<std::size_t>& rec
     for (std::size_t c = 0; c < set.records[r].channels.size(); ++c) {
       const RecordChannel& channel = set.records[r].channels[c];
       if (!channel.fitted) continue;
-      const double scale = channel.sigma.value_or(scales.contains(channel.sensor) ? scales.at(channel.sensor) : 1.0);
+      const double scale =
+          channel.sigma.value_or(scales.contains(channel.sensor) ? scales.at(channel.sensor) : 1.0);
       data.pieces.push_back({r, c, data.rows, channel.values.size(), scale});
       data.rows += channel.values.size();
     }

@@ -53,7 +53,8 @@ struct RecordFit {
   std::vector<RecordSetting> settings;
   std::vector<RecordPrediction> predictions;
   Eigen::VectorXd residual;
-  Eigen::MatrixXd jacobian;    ///< of the signal by the numbers, each over its scale: as RecordFitOptions::derivatives
+  Eigen::MatrixXd
+      jacobian;  ///< of the signal by the numbers, each over its scale: as RecordFitOptions::derivatives
   Eigen::MatrixXd covariance;  ///< of the numbers in their units, of residuals that are correlated
   Identifiability rank;        ///< which numbers the records determine; empty where find_rank() was not asked
   double chi2 = 0.0;           ///< sum of squares of the residual
@@ -76,8 +77,8 @@ struct RecordFitOptions {
   double tolerance = 1e-5;      ///< relative fall of chi2 below which the fit ends
   double simplex_change = 0.0;  ///< as RecordSet::simplex_change; 0: by `tolerance`
   FitDerivatives derivatives = FitDerivatives::central;
-  Eigen::MatrixXd first_jacobian;                            ///< of the signal at the start, where known; else empty
-  std::vector<RecordSetting> fixed;                          ///< beside the fitted ones
+  Eigen::MatrixXd first_jacobian;    ///< of the signal at the start, where known; else empty
+  std::vector<RecordSetting> fixed;  ///< beside the fitted ones
   std::function<bool(int iteration, double chi2)> progress;  ///< false stops
 };
 

@@ -65,7 +65,8 @@ double number_by_column(const TomlTable& table, const char* key, const std::stri
   return table.table(key).number_or(column, otherwise, range);
 }
 
-void read_record(const TomlTable& table, const TomlNode* node, const std::filesystem::path& folder, RecordSet& set) {
+void read_record(const TomlTable& table, const TomlNode* node, const std::filesystem::path& folder,
+                 RecordSet& set) {
   Record record;
   record.name = table.text("name");
   base::require_plain_name(table, "name", record.name);
@@ -85,7 +86,8 @@ void read_record(const TomlTable& table, const TomlNode* node, const std::filesy
   if (table.has("rows")) {
     const TomlTable rows = table.table("rows");
     if (const auto* entries = entries_of(node, "rows"))
-      for (const base::TomlEntry& e : *entries) csv.rows.emplace_back(e.key, rows.number(e.key, Range::finite()));
+      for (const base::TomlEntry& e : *entries)
+        csv.rows.emplace_back(e.key, rows.number(e.key, Range::finite()));
   }
   const std::vector<std::string> watched = table.texts_or_none("watched");
   const auto* columns = entries_of(node, "columns");
@@ -106,8 +108,8 @@ void read_record(const TomlTable& table, const TomlNode* node, const std::filesy
       channel.sigma = table.optional_number("sigma", sigmas);
     else if (table.has("sigma"))
       channel.sigma = table.table("sigma").optional_number(e.key, sigmas);
-    csv.columns.emplace_back(e.key,
-                             table.has("scale") ? number_by_column(table, "scale", e.key, 1.0, Range::finite()) : 1.0);
+    csv.columns.emplace_back(
+        e.key, table.has("scale") ? number_by_column(table, "scale", e.key, 1.0, Range::finite()) : 1.0);
     record.channels.push_back(std::move(channel));
   }
   for (std::size_t k = 0; k < watched.size(); ++k)
@@ -140,7 +142,8 @@ void read_fit(const TomlTable& table, const TomlNode* node, RecordSet& set) {
   if (table.has("method")) set.method = table.choice("method", methods).value_or(FitMethod::gauss_newton);
   if (table.has("simplex_change")) {
     set.simplex_change = table.number("simplex_change", Range::above(0.0, 1.0));
-    if (set.method != FitMethod::nelder_mead) table.fail("simplex_change", "only with method = \"nelder_mead\"");
+    if (set.method != FitMethod::nelder_mead)
+      table.fail("simplex_change", "only with method = \"nelder_mead\"");
   }
   std::set<std::string> keys;
   for (const bool each : {false, true}) {
@@ -169,8 +172,8 @@ void read_fit(const TomlTable& table, const TomlNode* node, RecordSet& set) {
   }
   const std::vector<std::string> profile = table.texts_or_none("profile");
   for (std::size_t k = 0; k < profile.size(); ++k) {
-    const auto found =
-        std::find_if(set.free.begin(), set.free.end(), [&](const FreeNumber& f) { return f.key == profile[k]; });
+    const auto found = std::find_if(set.free.begin(), set.free.end(),
+                                    [&](const FreeNumber& f) { return f.key == profile[k]; });
     if (found == set.free.end())
       table.fail_element("profile", k, "must be one of fit.free or fit.free_each");
     else
@@ -178,20 +181,23 @@ void read_fit(const TomlTable& table, const TomlNode* node, RecordSet& set) {
   }
   const std::vector<std::string> heldout = table.texts_or_none("heldout");
   for (std::size_t k = 0; k < heldout.size(); ++k) {
-    const auto record =
-        std::find_if(set.records.begin(), set.records.end(), [&](const Record& r) { return r.name == heldout[k]; });
+    const auto record = std::find_if(set.records.begin(), set.records.end(),
+                                     [&](const Record& r) { return r.name == heldout[k]; });
     if (record == set.records.end())
       table.fail_element("heldout", k, "must be the name of a record");
     else
       record->heldout = true;
   }
   const auto fitted = [](const Record& r) {
-    return r.heldout || std::any_of(r.channels.begin(), r.channels.end(), [](const auto& c) { return c.fitted; });
+    return r.heldout ||
+           std::any_of(r.channels.begin(), r.channels.end(), [](const auto& c) { return c.fitted; });
   };
   for (const Record& r : set.records)
     if (!fitted(r))
-      table.fail("heldout", fmt::format("must name {}, or its `watched` must leave a column to be fitted", r.name));
-  if (!set.records.empty() && set.used(false).empty()) table.fail("heldout", "must leave a record to be fitted");
+      table.fail("heldout",
+                 fmt::format("must name {}, or its `watched` must leave a column to be fitted", r.name));
+  if (!set.records.empty() && set.used(false).empty())
+    table.fail("heldout", "must leave a record to be fitted");
   set.tolerance = table.optional_number("model_tolerance", Range::from(0.0, 1.0));
   read_families(table, node, set);
   set.most_effects = table.integer_or("most_effects", set.most_effects, 0, 10);
@@ -243,7 +249,8 @@ RecordSet read_records(const std::filesystem::path& file, const std::vector<base
   const TomlNode* list = root_node.find("records");
   const std::vector<TomlTable> tables = root.tables("records");
   for (std::size_t k = 0; k < tables.size(); ++k)
-    read_record(tables[k], list != nullptr && k < list->items.size() ? &list->items[k] : nullptr, folder, set);
+    read_record(tables[k], list != nullptr && k < list->items.size() ? &list->items[k] : nullptr, folder,
+                set);
   if (tables.empty()) root.fail("records", "must be given, one table or more");
   read_fit(root.table("fit"), root_node.find("fit"), set);
   document.finish();

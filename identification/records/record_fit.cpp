@@ -24,7 +24,8 @@ double step_of(const RecordSetting& s, Differences differences) {
 
 /// Takes derivatives by numbers that hardly act again, with a long step: a short one shows the errors of the integration. The column of
 /// a number that does not act with a long step either becomes zero, and the number stays where it is.
-void retake_weak_columns(const RecordModel& model, const RecordData& data, const std::vector<RecordSetting>& settings,
+void retake_weak_columns(const RecordModel& model, const RecordData& data,
+                         const std::vector<RecordSetting>& settings,
                          const std::vector<RecordPrediction>& base, const std::vector<RecordSetting>& fixed,
                          Eigen::MatrixXd& jacobian) {
   // Changes of the whole residual in standard deviations; a scale is 1 % of a declared number.
@@ -46,7 +47,8 @@ void retake_weak_columns(const RecordModel& model, const RecordData& data, const
     if (jacobian.col(k).norm() * long_step < nothing) jacobian.col(k).setZero();
 }
 
-void gauss_newton(const RecordModel& model, const RecordData& data, const RecordFitOptions& options, RecordFit& fit) {
+void gauss_newton(const RecordModel& model, const RecordData& data, const RecordFitOptions& options,
+                  RecordFit& fit) {
   const auto count = static_cast<Eigen::Index>(fit.settings.size());
   Eigen::VectorXd start(count);
   BoundedProblem problem;
@@ -76,7 +78,8 @@ void gauss_newton(const RecordModel& model, const RecordData& data, const Record
   problem.residual_jacobian = [&](const Eigen::VectorXd& x) -> Eigen::MatrixXd {
     const std::vector<RecordSetting> settings = at(x);
     if (last_at != x) last = model.predict(together(settings, options.fixed), data.records, data.readings);
-    Eigen::MatrixXd derivatives = signal_derivatives(model, data, settings, last, options.fixed, Differences::forward);
+    Eigen::MatrixXd derivatives =
+        signal_derivatives(model, data, settings, last, options.fixed, Differences::forward);
     retake_weak_columns(model, data, settings, last, options.fixed, derivatives);
     return -derivatives;
   };
@@ -85,7 +88,8 @@ void gauss_newton(const RecordModel& model, const RecordData& data, const Record
   };
   problem.by_chance = static_cast<double>(count) / std::max(1.0, static_cast<double>(data.rows));
   problem.first_jacobian = -options.first_jacobian;
-  const BoundedResult result = bounded_least_squares(problem, start, options.max_iterations, options.tolerance);
+  const BoundedResult result =
+      bounded_least_squares(problem, start, options.max_iterations, options.tolerance);
   fit.settings = at(result.x);
   fit.jacobian = -result.jacobian;
   fit.iterations = result.iterations;
@@ -133,8 +137,9 @@ void take_steps(const RecordModel& model, const RecordData& data, const std::vec
 
 Eigen::MatrixXd signal_derivatives(const RecordModel& model, const RecordData& data,
                                    const std::vector<RecordSetting>& settings,
-                                   const std::vector<RecordPrediction>& base, const std::vector<RecordSetting>& fixed,
-                                   Differences differences, double widen) {
+                                   const std::vector<RecordPrediction>& base,
+                                   const std::vector<RecordSetting>& fixed, Differences differences,
+                                   double widen) {
   std::vector<Beside> beside(settings.size());
   const auto step_down = [&](std::size_t k) {
     const double step = widen * step_of(settings[k], differences);
@@ -184,9 +189,9 @@ RecordFit fit_motion(const RecordModel& model, const RecordData& data, std::vect
   for (const RecordPrediction& p : fit.predictions)
     if (!p.usable()) why = p.failure;
   if (!why.empty()) {
-    static_cast<void>(
-        fit.report.end(model.stopped() ? numerics::Termination::interrupted : numerics::Termination::step_too_small,
-                       model.stopped() ? "interrupted" : "the scenario cannot be simulated: " + why));
+    static_cast<void>(fit.report.end(
+        model.stopped() ? numerics::Termination::interrupted : numerics::Termination::step_too_small,
+        model.stopped() ? "interrupted" : "the scenario cannot be simulated: " + why));
     fit.chi2 = std::numeric_limits<double>::max();
     return fit;
   }
@@ -222,9 +227,10 @@ double noise_of(const RecordData& data, const RecordFit& optimum) {
 }
 
 /// As far as should change the residual by `share` of `doubtful_change`; negative: to the other side. `held` moves, at most that far.
-Move move_along(const RecordData& data, const RecordFit& optimum, const Eigen::VectorXd& direction, Eigen::Index held,
-                double share) {
-  constexpr double far = 20.0;  // scales, a fifth of a declared number: far beyond its standard error, were it known
+Move move_along(const RecordData& data, const RecordFit& optimum, const Eigen::VectorXd& direction,
+                Eigen::Index held, double share) {
+  constexpr double far =
+      20.0;  // scales, a fifth of a declared number: far beyond its standard error, were it known
   Move move;
   move.held = held;
   const double by_scale =
@@ -326,15 +332,19 @@ ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, cons
 /// the way ends, at a bound or where nothing can be simulated, before that could be told. Where half the way chi2 rises
 /// along a straight line as in a linear model nothing is fitted anew, unless the numbers nearly go together: a valley that the derivatives
 /// miss by a little rises, too.
-std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
-                                         const Eigen::VectorXd& direction, Eigen::Index k, double side) {
-  constexpr double can_tell = 2.0;  // change of the residual: a rise by its square, 4, is told from none, below 1.8
-  const Eigen::VectorXd effect = optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs();
+std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordData& data,
+                                         const RecordFit& optimum, const Eigen::VectorXd& direction,
+                                         Eigen::Index k, double side) {
+  constexpr double can_tell =
+      2.0;  // change of the residual: a rise by its square, 4, is told from none, below 1.8
+  const Eigen::VectorXd effect =
+      optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs();
   const bool go_together = (optimum.jacobian * direction).norm() < 0.1 * effect.maxCoeff();
   const Move half = move_along(data, optimum, direction, k, 0.5 * side);
   const std::vector<RecordPrediction> there = model.predict(half.settings, data.records, data.readings);
   if (!go_together && !half.clipped && std::ranges::all_of(there, &RecordPrediction::usable)) {
-    const double share = rise_of(data, optimum, data.residual(there).squaredNorm()) / (half.promised * half.promised);
+    const double share =
+        rise_of(data, optimum, data.residual(there).squaredNorm()) / (half.promised * half.promised);
     if (share > 0.5 && share < 2.0) return std::nullopt;
   }
   const ValleyPoint end = follow_valley(model, data, optimum, direction, k, side);
@@ -363,7 +373,8 @@ void test_intervals(const RecordModel& model, const RecordData& data, RecordFit&
     for (Eigen::Index i = 0; i < count; ++i) {
       if (i == k) continue;
       const double deviation = std::sqrt(covariance(i, i)) * noise_of(data, fit);
-      const bool goes_along = fit.rank.is_known(static_cast<std::size_t>(i)) && std::abs(moved(i)) > deviation;
+      const bool goes_along =
+          fit.rank.is_known(static_cast<std::size_t>(i)) && std::abs(moved(i)) > deviation;
       if (goes_along) others.push_back(static_cast<std::size_t>(i));
       direction[i] = moved(i) / moved(k);
     }

@@ -8,8 +8,8 @@ namespace snare::identification {
 
 /// Least squares of the free simulation: (I.20). Gauss-Newton (Levenberg-Marquardt, bounds) with differences in parallel;
 /// or Nelder and Mead's simplex by NLopt, without derivatives on its way.
-[[nodiscard]] RecordFit fit_motion(const RecordModel& model, const RecordData& data, std::vector<RecordSetting> start,
-                                   const RecordFitOptions& options = {});
+[[nodiscard]] RecordFit fit_motion(const RecordModel& model, const RecordData& data,
+                                   std::vector<RecordSetting> start, const RecordFitOptions& options = {});
 
 /// How derivatives are taken from simulations.
 enum class Differences {
@@ -23,7 +23,8 @@ enum class Differences {
                                                  const std::vector<RecordSetting>& settings,
                                                  const std::vector<RecordPrediction>& base,
                                                  const std::vector<RecordSetting>& fixed = {},
-                                                 Differences differences = Differences::central, double widen = 1.0);
+                                                 Differences differences = Differences::central,
+                                                 double widen = 1.0);
 
 /// Fills `rank` of a usable fit with central derivatives, whose errors those by twice the step show. With null directions the
 /// covariance becomes that with one number of each held.                                       theory.md (I.32)

@@ -19,7 +19,7 @@ namespace {
 using scenario::WireMotions;
 
 constexpr long longest_trial = 100;  // over the longest run before
-constexpr long a_run = 150;          // steps that a run may take at least, however quiet the declared motion is
+constexpr long a_run = 150;  // steps that a run may take at least, however quiet the declared motion is
 
 /// The run of a scenario with sensors.
 const WireMotions& run_of(const scenario::Scenario& s, const RecordSet& set) {
@@ -54,8 +54,8 @@ RecordModel::RecordModel(const RecordSet& set, std::function<bool()> stop)
   for (const Record& r : set.records) {
     for (const RecordChannel& c : r.channels)
       if (!columns_.contains(c.sensor))
-        problems.push_back({set.file.string(), 0, fmt::format("records[{}].columns.{}", r.name, c.column), c.sensor,
-                            "must be a column of the scenario's sensors: " + known});
+        problems.push_back({set.file.string(), 0, fmt::format("records[{}].columns.{}", r.name, c.column),
+                            c.sensor, "must be a column of the scenario's sensors: " + known});
   }
   for (const FreeNumber& f : set.free) {
     // What stands in no file may still be a key; an override finds out.
@@ -84,8 +84,8 @@ RecordModel::RecordModel(const RecordSet& set, std::function<bool()> stop)
       overrides.insert(overrides.end(), r.set.begin(), r.set.end());
       static_cast<void>(scenario::read_scenario(set.scenario, overrides));
     } catch (const base::InputError& error) {
-      problems.push_back(
-          {set.file.string(), 0, fmt::format("records[{}].set", r.name), "", error.problems().front().message()});
+      problems.push_back({set.file.string(), 0, fmt::format("records[{}].set", r.name), "",
+                          error.problems().front().message()});
     }
   }
   for (const RecordFamily& family : set.families) {
@@ -153,12 +153,13 @@ std::string RecordModel::unit(const RecordChannel& channel) const {
   return column == columns_.end() ? "" : unit_of_key(column->second);
 }
 
-std::vector<base::Override> RecordModel::keys_of(const std::vector<RecordSetting>& settings, std::size_t count,
-                                                 std::size_t record) const {
+std::vector<base::Override> RecordModel::keys_of(const std::vector<RecordSetting>& settings,
+                                                 std::size_t count, std::size_t record) const {
   std::vector<base::Override> overrides = set_.set;
   const Record& r = set_.records[record];
   overrides.insert(overrides.end(), r.set.begin(), r.set.end());
-  std::vector<std::pair<std::size_t, std::string>> counted_above;  // an override, and the key above which it is counted
+  std::vector<std::pair<std::size_t, std::string>>
+      counted_above;  // an override, and the key above which it is counted
   for (std::size_t k = 0; k < count; ++k) {
     const RecordSetting& s = settings[k];
     if (!s.number.overrides || (s.number.record && *s.number.record != record)) continue;
@@ -173,15 +174,16 @@ std::vector<base::Override> RecordModel::keys_of(const std::vector<RecordSetting
   return overrides;
 }
 
-std::vector<base::Override> RecordModel::overrides_of(const std::vector<RecordSetting>& settings, std::size_t record,
-                                                      Eigen::Index readings) const {
+std::vector<base::Override> RecordModel::overrides_of(const std::vector<RecordSetting>& settings,
+                                                      std::size_t record, Eigen::Index readings) const {
   std::vector<base::Override> overrides = keys_of(settings, settings.size(), record);
   const double interval = declared_.number("output_interval_s").value_or(1e-3);
   overrides.push_back({"duration_s", exact_text(duration_for(set_.records[record], readings, interval))});
   return overrides;
 }
 
-double RecordModel::as_set(const std::vector<RecordSetting>& settings, std::size_t number, double value) const {
+double RecordModel::as_set(const std::vector<RecordSetting>& settings, std::size_t number,
+                           double value) const {
   const RecordNumber& own = settings[number].number;
   if (!own.overrides || !own.above.empty()) return value;
   const std::size_t record = own.record.value_or(set_.used(false).front());
@@ -191,8 +193,8 @@ double RecordModel::as_set(const std::vector<RecordSetting>& settings, std::size
   return sets ? StandingNumbers{declared_in_[record], last}.number(own.key).value_or(value) : value;
 }
 
-std::shared_ptr<const SensorRun> RecordModel::run(const std::vector<base::Override>& overrides, std::size_t record,
-                                                  std::string& failure) const {
+std::shared_ptr<const SensorRun> RecordModel::run(const std::vector<base::Override>& overrides,
+                                                  std::size_t record, std::string& failure) const {
   std::string key = std::to_string(record);
   for (const base::Override& one : overrides) key += "\n" + one.key + "=" + one.value;
   {
@@ -209,13 +211,14 @@ std::shared_ptr<const SensorRun> RecordModel::run(const std::vector<base::Overri
   options.stop = [&] { return ++steps > most || stopped(); };
   std::vector<coupling::MotionSample> samples;
   ++simulations_;
-  const coupling::MotionResult result = coupling::simulate(named.motion, options, [&](const coupling::MotionSample& s) {
-    samples.push_back(s);
-    return false;
-  });
+  const coupling::MotionResult result =
+      coupling::simulate(named.motion, options, [&](const coupling::MotionSample& s) {
+        samples.push_back(s);
+        return false;
+      });
   if (steps > most) {
-    failure =
-        fmt::format("the integration takes more than {} steps, {} times those of any run before", most, longest_trial);
+    failure = fmt::format("the integration takes more than {} steps, {} times those of any run before", most,
+                          longest_trial);
     return nullptr;
   }
   if (!result.report.usable()) {
@@ -240,7 +243,8 @@ RecordPrediction RecordModel::simulate(const std::vector<RecordSetting>& setting
     if (run == nullptr) return prediction;
     SignalChanges changes;
     for (const RecordSetting& s : settings)
-      if (s.number.signal && (!s.number.record || *s.number.record == record)) s.number.signal(changes, s.value);
+      if (s.number.signal && (!s.number.record || *s.number.record == record))
+        s.number.signal(changes, s.value);
     prediction.channels = signals_at(*run, set_.records[record], readings, columns_, changes);
   } catch (const base::InputError& error) {
     prediction.failure = error.problems().front().message();
@@ -260,7 +264,8 @@ std::vector<std::vector<RecordPrediction>> RecordModel::predict_many(
     const std::vector<std::vector<RecordSetting>>& settings, const std::vector<std::size_t>& records,
     const std::vector<Eigen::Index>& readings, const std::vector<RecordPrediction>* base,
     const std::vector<std::optional<std::size_t>>& only) const {
-  std::vector<std::vector<RecordPrediction>> all(settings.size(), std::vector<RecordPrediction>(records.size()));
+  std::vector<std::vector<RecordPrediction>> all(settings.size(),
+                                                 std::vector<RecordPrediction>(records.size()));
   struct Task {
     std::size_t setting, record;
   };
@@ -313,15 +318,16 @@ void RecordModel::look_at_joints() {
     sums.push_back({none, none, none});
   }
   double count = 0.0;
-  const coupling::MotionResult result = coupling::simulate(run.motion, options, [&](const coupling::MotionSample& s) {
-    for (std::size_t a = 0; a < sums.size(); ++a) {
-      sums[a].spring += s.arms[a].joint_torque.cwiseAbs2();
-      sums[a].drive += s.arms[a].drive_torque.cwiseAbs2();
-      sums[a].rate += s.arms[a].state.motor_rate.cwiseAbs2();
-    }
-    count += 1.0;
-    return false;
-  });
+  const coupling::MotionResult result =
+      coupling::simulate(run.motion, options, [&](const coupling::MotionSample& s) {
+        for (std::size_t a = 0; a < sums.size(); ++a) {
+          sums[a].spring += s.arms[a].joint_torque.cwiseAbs2();
+          sums[a].drive += s.arms[a].drive_torque.cwiseAbs2();
+          sums[a].rate += s.arms[a].state.motor_rate.cwiseAbs2();
+        }
+        count += 1.0;
+        return false;
+      });
   if (result.report.usable()) took(steps);
   bound_trials();
   if (count == 0.0) return;
@@ -331,7 +337,8 @@ void RecordModel::look_at_joints() {
       const multibody::ElasticJoint& joint = arm.arm.joints[base::at(j)];
       if (joint.flexure) continue;
       joints_[arm.name + "::" + joint.name] = {
-          std::sqrt(std::max(sums[a].spring[j], sums[a].drive[j]) / count), std::sqrt(sums[a].rate[j] / count),
+          std::sqrt(std::max(sums[a].spring[j], sums[a].drive[j]) / count),
+          std::sqrt(sums[a].rate[j] / count),
           arm.arm.tree.body(joint.body).joint == multibody::JointKind::prismatic, joint.link};
     }
   }

@@ -50,16 +50,22 @@ class RecordModel {
   /// and for keys of free numbers that are none.
   explicit RecordModel(const RecordSet& set, std::function<bool()> stop = {});
 
-  [[nodiscard]] const RecordSet& records() const { return set_; }               ///< as read
-  [[nodiscard]] const DeclaredScenario& declared() const { return declared_; }  ///< the scenario as its file says
+  [[nodiscard]] const RecordSet& records() const { return set_; }  ///< as read
+  [[nodiscard]] const DeclaredScenario& declared() const {
+    return declared_;
+  }  ///< the scenario as its file says
   /// The free numbers of the file, at their declared values; those of every record for itself once for each of `records`.
   [[nodiscard]] std::vector<RecordSetting> free_settings(const std::vector<std::size_t>& records) const;
   /// Unit of a channel's column, from the sensor's name: "mm".
   [[nodiscard]] std::string unit(const RecordChannel& channel) const;
   [[nodiscard]] const std::map<std::string, JointUse>& joints() const { return joints_; }
-  [[nodiscard]] const std::optional<SlowMode>& slowest() const { return slowest_; }  ///< of the first record's scenario
+  [[nodiscard]] const std::optional<SlowMode>& slowest() const {
+    return slowest_;
+  }  ///< of the first record's scenario
   /// Full column of a channel's sensor.
-  [[nodiscard]] const std::string& column(const RecordChannel& channel) const { return columns_.at(channel.sensor); }
+  [[nodiscard]] const std::string& column(const RecordChannel& channel) const {
+    return columns_.at(channel.sensor);
+  }
 
   /// Predictions of these records, of the first `readings` of each (empty: of all), beyond which nothing is simulated. In parallel, the same for any
   /// number of threads.
@@ -76,25 +82,26 @@ class RecordModel {
   /// What the key of a number is set to, in its unit, where the number has this value and those before it in `settings` theirs: in the first of the
   /// fitted records that it is in. An effect's number is counted from what is declared, and acts beside what others have set. The value itself
   /// where a number has no key of the files.
-  [[nodiscard]] double as_set(const std::vector<RecordSetting>& settings, std::size_t number, double value) const;
+  [[nodiscard]] double as_set(const std::vector<RecordSetting>& settings, std::size_t number,
+                              double value) const;
 
   [[nodiscard]] long simulations() const { return simulations_; }  ///< runs so far
   [[nodiscard]] bool stopped() const { return stop_ && stop_(); }  ///< somebody wants the work to end
 
  private:
   /// Null with `failure` set where the scenario cannot be simulated.
-  [[nodiscard]] std::shared_ptr<const SensorRun> run(const std::vector<base::Override>& overrides, std::size_t record,
-                                                     std::string& failure) const;
+  [[nodiscard]] std::shared_ptr<const SensorRun> run(const std::vector<base::Override>& overrides,
+                                                     std::size_t record, std::string& failure) const;
   /// A run came to its end in so many steps.
   void took(long steps) const;
   void bound_trials() const;
   [[nodiscard]] RecordPrediction simulate(const std::vector<RecordSetting>& settings, std::size_t record,
                                           Eigen::Index readings) const;
   /// Keys of a record's scenario with the first `count` settings, and with all of them and the duration that so many readings want.
-  [[nodiscard]] std::vector<base::Override> keys_of(const std::vector<RecordSetting>& settings, std::size_t count,
-                                                    std::size_t record) const;
-  [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<RecordSetting>& settings, std::size_t record,
-                                                         Eigen::Index readings) const;
+  [[nodiscard]] std::vector<base::Override> keys_of(const std::vector<RecordSetting>& settings,
+                                                    std::size_t count, std::size_t record) const;
+  [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<RecordSetting>& settings,
+                                                         std::size_t record, Eigen::Index readings) const;
   void look_at_joints();
   /// Zero or next to it for a number > 0 whose reader takes none below.
   [[nodiscard]] double lower_bound(const FreeNumber& number) const;

@@ -31,8 +31,9 @@ struct RecordNumber {
   std::string unit;  ///< as results show it; empty for a pure number
   double declared = 0.0;
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
-  double scale = 1.0;                 ///< a change of this size is small and can be seen, > 0
-  bool scale_follows = false;         ///< steps of differences are those of the value where it is larger than declared
+  double scale = 1.0;  ///< a change of this size is small and can be seen, > 0
+  bool scale_follows =
+      false;  ///< steps of differences are those of the value where it is larger than declared
   std::optional<std::size_t> record;  ///< the one to which it belongs; none: all
   /// Keys of the scenario with this value, in a record where numbers stand as `record` says: as it declares them, or as those before this one set
   /// them. Either this or `signal`.

@@ -17,7 +17,8 @@ std::vector<double> lagged(const std::vector<double>& times, const std::vector<d
   for (std::size_t k = 1; k < values.size(); ++k) {
     const double step = times[k] - times[k - 1];
     const double slope = (values[k] - values[k - 1]) / step;
-    filtered[k] = values[k] - lag * slope + (filtered[k - 1] - values[k - 1] + lag * slope) * std::exp(-step / lag);
+    filtered[k] =
+        values[k] - lag * slope + (filtered[k - 1] - values[k - 1] + lag * slope) * std::exp(-step / lag);
   }
   return filtered;
 }
@@ -26,7 +27,8 @@ std::vector<double> lagged(const std::vector<double>& times, const std::vector<d
 double value_at(const std::vector<double>& times, const std::vector<double>& values, double time) {
   if (time <= times.front()) return values.front();
   if (time >= times.back()) return values.back();
-  const auto after = static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), time) - times.begin());
+  const auto after =
+      static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), time) - times.begin());
   if (time == times[after - 1]) return values[after - 1];
   const std::size_t count = std::min<std::size_t>(4, times.size());
   const std::size_t first = std::min(after < 2 ? 0 : after - 2, times.size() - count);
@@ -74,8 +76,8 @@ std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const Record& reco
           change.lag += found->second.lag;
         }
       }
-      const std::vector<double> values =
-          lagged(readings.times, readings.values[static_cast<std::size_t>(component - names.begin())], change.lag);
+      const std::vector<double> values = lagged(
+          readings.times, readings.values[static_cast<std::size_t>(component - names.begin())], change.lag);
       const RecordFilter& filter = record.filter;
       const Eigen::VectorXd times = filter.cutoff > 0.0 ? filter.times : record.times.head(count);
       result[c].resize(times.size());

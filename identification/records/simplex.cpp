@@ -44,11 +44,11 @@ double chi2_at(unsigned count, const double* x, double* /*gradient*/, void* cont
   Search& search = *static_cast<Search*>(context);
   try {
     for (unsigned k = 0; k < count; ++k) search.settings[k].value = x[k] * search.settings[k].number.scale;
-    const Eigen::VectorXd r = search.data.residual(search.model.predict(together(search.settings, search.options.fixed),
-                                                                        search.data.records, search.data.readings));
+    const Eigen::VectorXd r = search.data.residual(search.model.predict(
+        together(search.settings, search.options.fixed), search.data.records, search.data.readings));
     const double chi2 = r.size() == 0 ? 1e6 * static_cast<double>(search.data.rows) : r.squaredNorm();
-    const bool go_on =
-        !search.model.stopped() && (!search.options.progress || search.options.progress(++search.evaluations, chi2));
+    const bool go_on = !search.model.stopped() &&
+                       (!search.options.progress || search.options.progress(++search.evaluations, chi2));
     if (chi2 < search.least) search.hardly_moves = moves_to(search, chi2) < search.options.simplex_change;
     if (!go_on || search.hardly_moves) nlopt_force_stop(search.opt);
     return chi2;
@@ -61,10 +61,13 @@ double chi2_at(unsigned count, const double* x, double* /*gradient*/, void* cont
 
 }  // namespace
 
-void nelder_mead(const RecordModel& model, const RecordData& data, const RecordFitOptions& options, RecordFit& fit) {
+void nelder_mead(const RecordModel& model, const RecordData& data, const RecordFitOptions& options,
+                 RecordFit& fit) {
   const auto count = static_cast<unsigned>(fit.settings.size());
-  const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(nlopt_create(NLOPT_LN_NELDERMEAD, count), nlopt_destroy);
-  Search search{model, data, options, fit.settings, opt.get(), 0, {}, std::numeric_limits<double>::max(), false, {}};
+  const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(nlopt_create(NLOPT_LN_NELDERMEAD, count),
+                                                              nlopt_destroy);
+  Search search{model, data, options, fit.settings, opt.get(), 0, {}, std::numeric_limits<double>::max(),
+                false, {}};
   std::vector<double> x, lower, upper, step;
   constexpr double wide = 10.0;  // scales: a tenth of a declared number
   for (const RecordSetting& s : fit.settings) {
@@ -97,7 +100,8 @@ void nelder_mead(const RecordModel& model, const RecordData& data, const RecordF
   } else if (result < 0) {
     static_cast<void>(fit.report.end(numerics::Termination::step_too_small, "the simplex search failed"));
   } else if (result == NLOPT_MAXEVAL_REACHED) {
-    static_cast<void>(fit.report.end(numerics::Termination::iteration_limit, "the simplex search did not converge"));
+    static_cast<void>(
+        fit.report.end(numerics::Termination::iteration_limit, "the simplex search did not converge"));
   }
 }
 

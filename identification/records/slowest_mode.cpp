@@ -61,7 +61,8 @@ std::optional<SlowMode> slowest_mode(const coupling::Motion& motion) {
     const double turn = softest(bushing.rotational_stiffness) * (first.turn + second.turn);
     if (shift > 0.0)
       found(fmt::format("bushing {}, shifting", bushing.name), 2.0 * std::numbers::pi / std::sqrt(shift));
-    if (turn > 0.0) found(fmt::format("bushing {}, turning", bushing.name), 2.0 * std::numbers::pi / std::sqrt(turn));
+    if (turn > 0.0)
+      found(fmt::format("bushing {}, turning", bushing.name), 2.0 * std::numbers::pi / std::sqrt(turn));
   }
   return slowest;
 }

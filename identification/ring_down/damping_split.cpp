@@ -114,7 +114,8 @@ VectorXd scatter_of(const Line& line, const std::vector<Index>& columns) {
 /// Half of a 95 % interval of Student's t with `dof` degrees of freedom, over that of the normal distribution.
 double wider_by(double dof) {
   constexpr double tail = 0.025;
-  return boost::math::quantile(boost::math::complement(boost::math::students_t(dof), tail)) / normal_quantile(tail);
+  return boost::math::quantile(boost::math::complement(boost::math::students_t(dof), tail)) /
+         normal_quantile(tail);
 }
 
 /// Two numbers or one of them, as far as the decays agree on them.
@@ -146,7 +147,8 @@ std::string statement_of(const DampingSplit& split, std::size_t modes) {
   std::string text = "bending_time and mass_rate are separated";
   const auto add = [&text](const char* name, const Estimate& e) {
     if (e.upper() < 0.0) {
-      text += fmt::format("; {} would be negative: the decays do not follow mass_rate + bending_time w^2", name);
+      text +=
+          fmt::format("; {} would be negative: the decays do not follow mass_rate + bending_time w^2", name);
     } else if (e.lower() < 0.0) {
       text += fmt::format("; {} is not different from zero, at most {:.4g}", name, e.upper());
     }
@@ -155,7 +157,8 @@ std::string statement_of(const DampingSplit& split, std::size_t modes) {
   add("mass_rate", split.mass_rate);
   if (!split.consistent()) {
     text += fmt::format(
-        "; the {} decays do not lie on one line (P = {:.2g}): another damping is at work, or a bending_share is wrong",
+        "; the {} decays do not lie on one line (P = {:.2g}): another damping is at work, or a bending_share "
+        "is wrong",
         modes, split.misfit_p);
   }
   return text;
@@ -166,13 +169,16 @@ std::string statement_of(const DampingSplit& split, const Line& line, double fre
   if (!split.consistent()) {
     return fmt::format(
         "the decays at nearly one frequency ({:.4g} Hz) contradict each other: 2 s from {:.4g} to {:.4g} 1/s "
-        "(P = {:.2g}). Loss in the material and mass-proportional damping are the same for all of them; mounts and the "
+        "(P = {:.2g}). Loss in the material and mass-proportional damping are the same for all of them; "
+        "mounts and the "
         "direction of the vibration are not",
         frequency, line.right.minCoeff(), line.right.maxCoeff(), split.misfit_p);
   }
   return fmt::format(
-      "all decays are at nearly one frequency ({:.4g} Hz): known is mass_rate + bending_time w^2 = {:.4g} 1/s, its "
-      "split is not; all material would be bending_time_s = {:.4g}, all mass-proportional mass_rate_1_s = {:.4g}. A "
+      "all decays are at nearly one frequency ({:.4g} Hz): known is mass_rate + bending_time w^2 = {:.4g} "
+      "1/s, its "
+      "split is not; all material would be bending_time_s = {:.4g}, all mass-proportional mass_rate_1_s = "
+      "{:.4g}. A "
       "second mode, or the same wire at another span, separates them",
       frequency, split.mass_rate.value, split.bending_time.value, split.mass_rate.value);
 }
@@ -204,7 +210,9 @@ DampingSplit split_damping(const std::vector<DecayOfMode>& decays, const MatrixX
   constexpr double unlikely = 0.01;
   const VectorXd squares = line.rows.col(bending_time);
   split.separated = squares.maxCoeff() >= far_enough * squares.minCoeff();
-  const auto estimate = [](const Combined& c, Index k) { return Estimate{c.solution.value[k], c.solution.error[k]}; };
+  const auto estimate = [](const Combined& c, Index k) {
+    return Estimate{c.solution.value[k], c.solution.error[k]};
+  };
   const Combined both = decays.size() > 1 ? combine(line, {bending_time, mass_rate}, unlikely) : Combined{};
   split.misfit_p = both.misfit_p;
   split.misfit_dof = both.dof;

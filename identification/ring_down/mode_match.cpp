@@ -103,10 +103,11 @@ DampingSplit split_damping(const std::vector<MatchedMode>& modes) {
   }
   DampingSplit split = split_damping(decays, covariance);
   for (const MatchedMode& m : modes) {
-    if (m.computed == 0.0 || std::max(m.computed / m.decay.natural, m.decay.natural / m.computed) < far_off) continue;
-    split.warnings.push_back(fmt::format("{:.4g} Hz is no mode of the declared wire, the nearest has {:.4g} Hz",
-                                         0.5 / std::numbers::pi * m.decay.natural,
-                                         0.5 / std::numbers::pi * m.computed));
+    if (m.computed == 0.0 || std::max(m.computed / m.decay.natural, m.decay.natural / m.computed) < far_off)
+      continue;
+    split.warnings.push_back(
+        fmt::format("{:.4g} Hz is no mode of the declared wire, the nearest has {:.4g} Hz",
+                    0.5 / std::numbers::pi * m.decay.natural, 0.5 / std::numbers::pi * m.computed));
     split.statement += "; " + split.warnings.back();
   }
   return split;

@@ -35,7 +35,8 @@ Envelope envelope(double s, double g, double t) {
 
 }  // namespace
 
-VectorXd oscillations(const OscillationLayout& layout, const VectorXd& p, const VectorXd& time, MatrixXd* by) {
+VectorXd oscillations(const OscillationLayout& layout, const VectorXd& p, const VectorXd& time,
+                      MatrixXd* by) {
   VectorXd values = VectorXd::Constant(time.size(), p[0]);
   if (by != nullptr) {
     by->setZero(time.size(), layout.size());

@@ -41,8 +41,8 @@ class Misfit final : public ceres::CostFunction {
     const VectorXd model = oscillations(layout_, p, time_, derivatives ? &by : nullptr);
     Eigen::Map<VectorXd>(residuals, num_residuals()) = (model - values_) / scale_;
     if (derivatives) {
-      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(jacobians[0], num_residuals(),
-                                                                                         layout_.size()) = by / scale_;
+      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+          jacobians[0], num_residuals(), layout_.size()) = by / scale_;
     }
     return model.allFinite();
   }
@@ -59,7 +59,8 @@ struct Solution {
   numerics::SolveReport report;
 };
 
-Solution solve(const OscillationLayout& layout, const VectorXd& start, const VectorXd& time, const VectorXd& values) {
+Solution solve(const OscillationLayout& layout, const VectorXd& start, const VectorXd& time,
+               const VectorXd& values) {
   Solution solution{start, {}};
   const double scale = (values.array() - values.mean()).abs().maxCoeff();
   ceres::Problem::Options owning;
@@ -83,8 +84,9 @@ Solution solve(const OscillationLayout& layout, const VectorXd& start, const Vec
   ceres::Solve(options, &problem, &summary);
   solution.report.iterations = static_cast<int>(summary.iterations.size());
   solution.report.residual_norm = std::sqrt(2.0 * summary.final_cost) * scale;
-  solution.report.termination = summary.termination_type == ceres::CONVERGENCE ? numerics::Termination::converged
-                                                                               : numerics::Termination::iteration_limit;
+  solution.report.termination = summary.termination_type == ceres::CONVERGENCE
+                                    ? numerics::Termination::converged
+                                    : numerics::Termination::iteration_limit;
   if (!summary.IsSolutionUsable() || !solution.numbers.allFinite()) {
     solution.report.end(numerics::Termination::not_finite, summary.message);
   }
@@ -149,7 +151,8 @@ Estimate of(const VectorXd& p, const MatrixXd& covariance, Index k, double unit 
 
 double bic(const VectorXd& residual, Index numbers) {
   const double n = static_cast<double>(residual.size());
-  return n * std::log(std::max(residual.squaredNorm() / n, 1e-300)) + static_cast<double>(numbers) * std::log(n);
+  return n * std::log(std::max(residual.squaredNorm() / n, 1e-300)) +
+         static_cast<double>(numbers) * std::log(n);
 }
 
 }  // namespace
@@ -161,7 +164,8 @@ double RingDownMode::natural() const {
 std::string ring_down_problem(const RingDown& data) {
   constexpr Index least = 20;
   const Index needed = std::max(least, 3 * (OscillationLayout::numbers_a_mode * data.modes + 2));
-  if (data.time.size() < needed) return fmt::format("has {} readings, must have at least {}", data.time.size(), needed);
+  if (data.time.size() < needed)
+    return fmt::format("has {} readings, must have at least {}", data.time.size(), needed);
   for (Index i = 1; i < data.time.size(); ++i) {
     if (data.time[i] <= data.time[i - 1]) return fmt::format("time_s must rise, reading {} does not", i + 1);
   }
@@ -231,7 +235,8 @@ MatrixXd covariance_of(const MatrixXd& by, const VectorXd& residual) {
   const double variance = residual.squaredNorm() / static_cast<double>(residual.size() - by.cols());
   MatrixXd covariance = variance * rank.covariance;
   for (Index k = 0; k < covariance.rows(); ++k)
-    if (!rank.is_known(static_cast<std::size_t>(k))) covariance(k, k) = std::numeric_limits<double>::infinity();
+    if (!rank.is_known(static_cast<std::size_t>(k)))
+      covariance(k, k) = std::numeric_limits<double>::infinity();
   return covariance;
 }
 
@@ -248,7 +253,8 @@ RingDownMode mode_of(const Numbers& now, const MatrixXd& covariance, Index m) {
   mode.decay = of(p, covariance, layout.decay(m));
   // sqrt(C^2 + S^2)
   const double size = now.amplitude(m);
-  const Eigen::Vector2d along = Eigen::Vector2d(p[layout.cosine(m)], p[layout.sine(m)]) / std::max(size, 1e-300);
+  const Eigen::Vector2d along =
+      Eigen::Vector2d(p[layout.cosine(m)], p[layout.sine(m)]) / std::max(size, 1e-300);
   mode.amplitude = {size, error_along(along, layout.cosine(m))};
   // s / sqrt(w^2 + s^2)
   const double w = p[layout.frequency(m)];
@@ -281,8 +287,9 @@ RingDownFit fit_ring_down(const RingDown& data) {
   const MatrixXd covariance = covariance_of(by, residual);
   std::vector<Index> order(static_cast<std::size_t>(now.layout.modes));
   std::iota(order.begin(), order.end(), Index{0});
-  std::sort(order.begin(), order.end(),
-            [&](Index a, Index b) { return now.p[now.layout.frequency(a)] < now.p[now.layout.frequency(b)]; });
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return now.p[now.layout.frequency(a)] < now.p[now.layout.frequency(b)];
+  });
   for (const Index m : order) {
     if (m == largest) fit.largest = fit.modes.size();
     fit.modes.push_back(mode_of(now, covariance, m));

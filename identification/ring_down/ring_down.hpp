@@ -33,7 +33,8 @@ struct RingDownMode {
   [[nodiscard]] double natural() const;
   /// Larger than five standard errors, with a frequency and a decay that the readings determine.
   [[nodiscard]] bool significant() const {
-    return amplitude.value > 5.0 * amplitude.error && std::isfinite(frequency.error) && std::isfinite(decay.error);
+    return amplitude.value > 5.0 * amplitude.error && std::isfinite(frequency.error) &&
+           std::isfinite(decay.error);
   }
 };
 
@@ -42,13 +43,14 @@ struct RingDownFit {
   std::vector<RingDownMode> modes;   ///< by frequency
   Eigen::MatrixXd decay_covariance;  ///< of their decays, a row and a column a mode [1/s^2]
   std::size_t largest = 0;           ///< index of the mode of the largest amplitude
-  std::optional<Estimate> friction;  ///< f of the largest mode [m/s]; absent: not asked for, or not in the data
-  double friction_bic = 0.0;         ///< BIC without friction less that with it; kept above 10
-  Eigen::VectorXd fitted;            ///< [m]
-  double rmse = 0.0;                 ///< [m]
-  double nrmse = 0.0;                ///< over the range of the readings [-]
-  double runs_p = 1.0;               ///< p of the number of runs of one sign of the residual
-  double ljung_box_p = 1.0;          ///< p of its autocorrelations
+  std::optional<Estimate>
+      friction;               ///< f of the largest mode [m/s]; absent: not asked for, or not in the data
+  double friction_bic = 0.0;  ///< BIC without friction less that with it; kept above 10
+  Eigen::VectorXd fitted;     ///< [m]
+  double rmse = 0.0;          ///< [m]
+  double nrmse = 0.0;         ///< over the range of the readings [-]
+  double runs_p = 1.0;        ///< p of the number of runs of one sign of the residual
+  double ljung_box_p = 1.0;   ///< p of its autocorrelations
   numerics::SolveReport report;
   /// The residual looks like noise; where it does not, the standard errors are too small.
   [[nodiscard]] bool noise_only() const { return runs_p > 1e-3 && ljung_box_p > 1e-3; }

@@ -31,7 +31,8 @@ RingDown read_readings(TomlDocument& document, const TomlTable& table, const std
   const std::string name = table.text("file");
   const double from =
       table.number_or("from_s", -std::numeric_limits<double>::infinity(), Range::from(-longest, longest));
-  const double to = table.number_or("to_s", std::numeric_limits<double>::infinity(), Range::from(-longest, longest));
+  const double to =
+      table.number_or("to_s", std::numeric_limits<double>::infinity(), Range::from(-longest, longest));
   if (to <= from) table.fail("to_s", "must be > from_s");
   if (name.empty()) return data;
   const std::filesystem::path path = folder / name;
@@ -40,10 +41,10 @@ RingDown read_readings(TomlDocument& document, const TomlTable& table, const std
     return data;
   }
   try {
-    const base::CsvTable csv =
-        base::read_csv(path, {{"time_s", CsvColumn::Presence::required, Range::from(-longest, longest), 1.0,
-                               CsvColumn::Order::non_decreasing},
-                              {"displacement_mm", CsvColumn::Presence::required, Range::from(-1e4, 1e4), mm}});
+    const base::CsvTable csv = base::read_csv(
+        path, {{"time_s", CsvColumn::Presence::required, Range::from(-longest, longest), 1.0,
+                CsvColumn::Order::non_decreasing},
+               {"displacement_mm", CsvColumn::Presence::required, Range::from(-1e4, 1e4), mm}});
     std::vector<double> time;
     std::vector<double> displacement;
     for (std::size_t i = 0; i < csv.rows; ++i) {
@@ -52,8 +53,8 @@ RingDown read_readings(TomlDocument& document, const TomlTable& table, const std
       displacement.push_back(csv.columns[1][i]);
     }
     data.time = Eigen::Map<const Eigen::VectorXd>(time.data(), static_cast<Eigen::Index>(time.size()));
-    data.displacement =
-        Eigen::Map<const Eigen::VectorXd>(displacement.data(), static_cast<Eigen::Index>(displacement.size()));
+    data.displacement = Eigen::Map<const Eigen::VectorXd>(displacement.data(),
+                                                          static_cast<Eigen::Index>(displacement.size()));
     if (time.empty()) table.fail("file", fmt::format("{} has no reading from from_s to to_s", path.string()));
     if (time.size() > most_rows)
       table.fail("file", fmt::format("{} has {} readings, must have at most {}: thin it out", path.string(),
@@ -64,7 +65,8 @@ RingDown read_readings(TomlDocument& document, const TomlTable& table, const std
   return data;
 }
 
-RingDownSeries read_series(TomlDocument& document, const TomlTable& table, const std::filesystem::path& folder) {
+RingDownSeries read_series(TomlDocument& document, const TomlTable& table,
+                           const std::filesystem::path& folder) {
   RingDownSeries series;
   series.data = read_readings(document, table, folder);
   series.data.name = table.text("name");
@@ -86,7 +88,8 @@ RingDownSeries read_series(TomlDocument& document, const TomlTable& table, const
 
 }  // namespace
 
-RingDownFile read_ring_down_file(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
+RingDownFile read_ring_down_file(const std::filesystem::path& file,
+                                 const std::vector<base::Override>& overrides) {
   TomlDocument document(file, overrides);
   const TomlTable root = document.root();
   base::require_schema(root, schema);
@@ -95,8 +98,8 @@ RingDownFile read_ring_down_file(const std::filesystem::path& file, const std::v
   result.title = root.text("title");
   result.source = root.text_or("source", "");
   if (root.has("wire") || root.has("mount")) {
-    const scenario::PushTables tables{root.table("wire"), root.table("mount"), root.table("wire"), root.table("wire"),
-                                      root.table("wire")};
+    const scenario::PushTables tables{root.table("wire"), root.table("mount"), root.table("wire"),
+                                      root.table("wire"), root.table("wire")};
     result.wire = scenario::read_wire_and_mounts(tables);
     if (result.wire->mount.kind == wire::MountKind::supports)
       tables.mount.fail("kind", "must be \"clamped\" or \"pinned\"");
@@ -104,7 +107,8 @@ RingDownFile read_ring_down_file(const std::filesystem::path& file, const std::v
       if (tables.mount.has(key)) tables.mount.fail(key, "mounts are rigid in motion");
     }
     for (const char* key : {"yield_stress_MPa", "natural_curvature_1_m"}) {
-      if (tables.wire.has(key)) tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
+      if (tables.wire.has(key))
+        tables.wire.fail(key, "the wire does not yield and is naturally straight in motion");
     }
     if (tables.wire.has("strand_slip_breadth"))
       tables.wire.fail("strand_slip_breadth", "all strands slide at one curvature in motion");
@@ -112,7 +116,8 @@ RingDownFile read_ring_down_file(const std::filesystem::path& file, const std::v
   std::set<std::string> names;
   for (const TomlTable& table : root.tables("series")) {
     result.series.push_back(read_series(document, table, file.parent_path()));
-    if (!names.insert(result.series.back().data.name).second) table.fail("name", "is taken by another series");
+    if (!names.insert(result.series.back().data.name).second)
+      table.fail("name", "is taken by another series");
   }
   if (result.series.empty()) root.fail("series", "must have at least one [[series]]");
   document.finish();

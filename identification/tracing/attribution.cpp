@@ -23,7 +23,8 @@ struct Smooth {
   Eigen::VectorXd free;        // of the fit's numbers
 };
 
-Smooth solve(const Eigen::MatrixXd& free, const Eigen::MatrixXd& columns, const Eigen::VectorXd& r, double weight) {
+Smooth solve(const Eigen::MatrixXd& free, const Eigen::MatrixXd& columns, const Eigen::VectorXd& r,
+             double weight) {
   const Eigen::Index p = free.cols();
   const Eigen::Index m = columns.cols();
   // [J H], every column of J scaled by its own length, those of H by the longest of theirs.
@@ -67,8 +68,8 @@ std::string describe(const ChannelFunction& f) {
     const std::size_t from = i;
     const bool high = f.value[i] > 0.0;
     while (i < f.value.size() && stands_out(i) && (f.value[i] > 0.0) == high) ++i;
-    text += fmt::format("{}{} between {:.3g} and {:.3g}", text.empty() ? "" : ", ", high ? "high" : "low", f.at[from],
-                        f.at[i - 1]);
+    text += fmt::format("{}{} between {:.3g} and {:.3g}", text.empty() ? "" : ", ", high ? "high" : "low",
+                        f.at[from], f.at[i - 1]);
   }
   return text.empty() ? "nowhere beyond three standard deviations" : text;
 }
@@ -98,8 +99,10 @@ std::vector<Fold> folds_of(const Model& model, const Data& data, const Fit& curr
     fold.free_out = current.jacobian(fold.out, Eigen::all);
     fold.residual_in = r(fold.in);
     fold.residual_out = r(fold.out);
-    const Smooth plain = solve(fold.free_in, Eigen::MatrixXd::Zero(fold.free_in.rows(), 1), fold.residual_in, 1.0);
-    fold.excess = (fold.residual_out - fold.free_out * plain.free).squaredNorm() - static_cast<double>(fold.out.size());
+    const Smooth plain =
+        solve(fold.free_in, Eigen::MatrixXd::Zero(fold.free_in.rows(), 1), fold.residual_in, 1.0);
+    fold.excess =
+        (fold.residual_out - fold.free_out * plain.free).squaredNorm() - static_cast<double>(fold.out.size());
     result.push_back(std::move(fold));
   }
   return result;
@@ -111,7 +114,8 @@ double carried_over(const std::vector<Fold>& folds, const Eigen::MatrixXd& colum
   double with = 0.0;
   for (const Fold& fold : folds) {
     const Smooth s = solve(fold.free_in, columns(fold.in, Eigen::all), fold.residual_in, weight);
-    const Eigen::VectorXd left = fold.residual_out - fold.free_out * s.free - columns(fold.out, Eigen::all) * s.values;
+    const Eigen::VectorXd left =
+        fold.residual_out - fold.free_out * s.free - columns(fold.out, Eigen::all) * s.values;
     with += left.squaredNorm() - static_cast<double>(fold.out.size());
     without += fold.excess;
   }

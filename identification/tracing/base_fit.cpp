@@ -26,8 +26,8 @@ std::string unseen(const Parameter& p, const std::vector<Series>& all) {
     if (p.only.empty() || p.only == s.name) series.push_back(s);
   if (series.empty()) return "its series is held out";
   for (const Effect& e : catalogue()) {
-    const bool own =
-        std::ranges::any_of(e.numbers, [&](const EffectNumber& n) { return p.key.ends_with(n.parameter.key); });
+    const bool own = std::ranges::any_of(
+        e.numbers, [&](const EffectNumber& n) { return p.key.ends_with(n.parameter.key); });
     // The declared model has the effect of a threshold already, so its absence cannot be a reason.
     const bool declared = p.parametrisation == Parametrisation::magnitude;
     if (own && !declared && e.unobservable != nullptr) return e.unobservable(series);
@@ -39,8 +39,8 @@ std::string unseen(const Parameter& p, const std::vector<Series>& all) {
 
 /// A start of the base fit from fractions of the declared section's stiffnesses, after a few steps on a coarse mesh. Empty where none
 /// comes below `best`, computed on the same mesh.
-std::vector<Setting> far_start(const Model& model, const Data& data, const std::vector<Setting>& start, const Fit& best,
-                               Progress& progress) {
+std::vector<Setting> far_start(const Model& model, const Data& data, const std::vector<Setting>& start,
+                               const Fit& best, Progress& progress) {
   const Model coarse(model.series(), few_edges(model.solver()));
   const Evaluation here = coarse.evaluate(best.settings);
   double least = best.report.usable() && here.complete ? data.residual(here).squaredNorm() : 1e300;
@@ -72,8 +72,8 @@ std::vector<Setting> far_start(const Model& model, const Data& data, const std::
 
 }  // namespace
 
-Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free, const Model& model, Data& data,
-             Progress& progress) {
+Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free, const Model& model,
+             Data& data, Progress& progress) {
   std::vector<std::string> keys = free;
   if (keys.empty()) keys = experiment.free;
   if (keys.empty()) keys = default_free(experiment);
@@ -83,12 +83,13 @@ Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
     const Parameter& p = parameters().at(key);
     const double declared = model.declared(p);
     if (!std::isfinite(declared)) {
-      throw InputError({experiment.file.string(), 0, "fit.free", fmt::format("\"{}\"", key),
-                        "is a threshold that the declared model does not have: declare a value to start from"});
+      throw InputError(
+          {experiment.file.string(), 0, "fit.free", fmt::format("\"{}\"", key),
+           "is a threshold that the declared model does not have: declare a value to start from"});
     }
     if (const std::string why = unseen(p, model.series()); !why.empty()) {
-      throw InputError(
-          {experiment.file.string(), 0, "fit.free", fmt::format("\"{}\"", key), "no reading depends on it: " + why});
+      throw InputError({experiment.file.string(), 0, "fit.free", fmt::format("\"{}\"", key),
+                        "no reading depends on it: " + why});
     }
     start.push_back({&p, p.coordinate(declared, declared)});
     length = length || key == "wire.length_mm";
@@ -161,9 +162,11 @@ void settle_scatter(const Model& model, Data& data, Fit& base) {
   std::size_t at = 0;
   for (const std::size_t k : data.series) {
     const double sigma = found.series[at++].scatter;
-    if (!model.series()[k].force_sigma && sigma < data.noise.sigma[k]) data.noise.set_published_sigma(k, sigma);
+    if (!model.series()[k].force_sigma && sigma < data.noise.sigma[k])
+      data.noise.set_published_sigma(k, sigma);
   }
-  base = fit(model, data, {found.settings.begin(), found.settings.begin() + static_cast<std::ptrdiff_t>(base.free)});
+  base = fit(model, data,
+             {found.settings.begin(), found.settings.begin() + static_cast<std::ptrdiff_t>(base.free)});
 }
 
 }  // namespace
@@ -179,12 +182,14 @@ void settle_noise(const Model& model, Data& data, Fit& base) {
     }
     data.noise = noise_from_residuals(model.series(), residuals, base.evaluation.force);
   }
-  const bool exact = std::ranges::all_of(model.series(), [](const Series& s) { return s.position_sigma == 0.0; });
+  const bool exact =
+      std::ranges::all_of(model.series(), [](const Series& s) { return s.position_sigma == 0.0; });
   if (!exact) data.placings = find_placings(model, base.settings, parameters().at(place_key));
   if (!declared || !exact) base = fit(model, data, base.fitted());
   if (!exact && data.placings.empty()) {
-    base.report.end(numerics::Termination::step_too_small,
-                    "the base model cannot be computed beside its places: contact_position_sigma_mm cannot be weighed");
+    base.report.end(
+        numerics::Termination::step_too_small,
+        "the base model cannot be computed beside its places: contact_position_sigma_mm cannot be weighed");
   }
 }
 
@@ -206,11 +211,13 @@ std::vector<Setting> along_valley(const Model& model, const Fit& fit, Eigen::Ind
 
 void leave_kinks(const Model& model, const Data& data, Fit& base, Progress& progress) {
   const std::vector<Series> now = model.apply(base.settings).series;
-  if (data.published() || std::ranges::none_of(now, [](const Series& s) { return coupling::remembers(s.test); }))
+  if (data.published() ||
+      std::ranges::none_of(now, [](const Series& s) { return coupling::remembers(s.test); }))
     return;
   constexpr int most_rounds = 3;
-  constexpr double worthwhile = 1e-3;   // of chi2
-  constexpr double smooth_share = 0.5;  // of its rise in a smooth valley, below which there may be another minimum
+  constexpr double worthwhile = 1e-3;  // of chi2
+  constexpr double smooth_share =
+      0.5;  // of its rise in a smooth valley, below which there may be another minimum
   for (int round = 0; round < most_rounds; ++round) {
     const Fit from = base;
     for (Eigen::Index k = 0; k < from.covariance.cols(); ++k) {
@@ -218,7 +225,8 @@ void leave_kinks(const Model& model, const Data& data, Fit& base, Progress& prog
         if (!progress.go_on("base model: starts near it")) return;
         const std::vector<Setting> start = along_valley(model, from, k, errors);
         const Evaluation at = model.evaluate(start);
-        if (!at.complete || data.residual(at).squaredNorm() > base.chi2 + smooth_share * errors * errors) continue;
+        if (!at.complete || data.residual(at).squaredNorm() > base.chi2 + smooth_share * errors * errors)
+          continue;
         Fit other = fit(model, data, start);
         if (other.report.usable() && other.chi2 < base.chi2) base = std::move(other);
       }

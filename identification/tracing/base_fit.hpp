@@ -11,8 +11,8 @@ namespace snare::identification {
 /// Fits the declared model by the numbers `free` (keys; none: those that the experiment names, else the two
 /// stiffnesses). Throws base::InputError for unknown keys, thresholds that the declared model does not have, too few
 /// readings. Gives unit noise to data of unknown noise.
-[[nodiscard]] Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free, const Model& model,
-                           Data& data, Progress& progress);
+[[nodiscard]] Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
+                           const Model& model, Data& data, Progress& progress);
 
 /// What the readings' errors are: the noise, where it is not known before a fit, from the residual, (I.3), and that of places
 /// with a tolerance, (I.14). Fits again where either is new; the report of `base` says so where that cannot be done.

@@ -42,12 +42,14 @@ ChannelColumns function_columns(const Data& data, const OfReading& argument, con
     const Eigen::Index n = data.measured[k].size();
     Eigen::MatrixXd own = Eigen::MatrixXd::Zero(n, stations);
     for (Eigen::Index i = 0; i < n; ++i) {
-      add_hats(high > low ? (argument(k, i) - low) / (high - low) : 0.0, weight(k, i), stations, 0, own.row(i));
+      add_hats(high > low ? (argument(k, i) - low) / (high - low) : 0.0, weight(k, i), stations, 0,
+               own.row(i));
     }
     return own;
   };
   result.columns = data.whiten(hats, stations);
-  for (int s = 0; s < stations; ++s) result.at.push_back((low + (high - low) * s / (stations - 1)) / argument_unit);
+  for (int s = 0; s < stations; ++s)
+    result.at.push_back((low + (high - low) * s / (stations - 1)) / argument_unit);
   return result;
 }
 
@@ -57,8 +59,8 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
     return measured_displacement(model.series()[k])[static_cast<std::size_t>(i)];
   };
   const auto computed = [&](std::size_t k, Eigen::Index i) { return current.evaluation.force[k][i]; };
-  const auto add = [&](ChannelColumns c, Channel channel, const std::string& argument, const std::string& effect,
-                       double unit, const std::string& constant) {
+  const auto add = [&](ChannelColumns c, Channel channel, const std::string& argument,
+                       const std::string& effect, double unit, const std::string& constant) {
     c.channel = channel;
     c.argument = argument;
     c.effect = effect;
@@ -79,8 +81,8 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
     return model.series()[k].readings->time[r] - model.series()[k].readings->time.front();
   };
   add(function_columns(data, time, one, 1.0), Channel::sensor,
-      timed ? "time since the series began [s]" : "number of the reading", "adds to the recorded force [N]", 1.0,
-      "reading.force_offset_N");
+      timed ? "time since the series began [s]" : "number of the reading", "adds to the recorded force [N]",
+      1.0, "reading.force_offset_N");
 
   const Parameter& span = parameters().at("mount.span_mm");
   const Parameter& zero = parameters().at("reading.displacement_offset_mm");
@@ -93,15 +95,18 @@ std::vector<ChannelColumns> channel_columns(const Model& model, const Data& data
       };
       add(function_columns(
               data, pull, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 0); }, 1.0),
-          Channel::mount, "pull on the mount along the chord [N]", "moves the mounts apart [mm]", 1e-3, span.key);
+          Channel::mount, "pull on the mount along the chord [N]", "moves the mounts apart [mm]", 1e-3,
+          span.key);
     }
     add(function_columns(
             data, computed, [&](std::size_t k, Eigen::Index i) { return smooth.by[k](i, 1); }, 1.0),
-        Channel::pusher, "force on the pusher [N]", "the pusher lags behind the recorded travel [mm]", 1e-3, zero.key);
+        Channel::pusher, "force on the pusher [N]", "the pusher lags behind the recorded travel [mm]", 1e-3,
+        zero.key);
   }
   const auto sense = [&](std::size_t k, Eigen::Index i) {
     const Eigen::Index last = data.measured[k].size() - 1;
-    const double move = displacement(k, std::min(i + 1, last)) - displacement(k, std::max<Eigen::Index>(i - 1, 0));
+    const double move =
+        displacement(k, std::min(i + 1, last)) - displacement(k, std::max<Eigen::Index>(i - 1, 0));
     return move > 0.0 ? 1.0 : (move < 0.0 ? -1.0 : 0.0);
   };
   add(function_columns(data, computed, sense, 1.0), Channel::contact, "force on the pusher [N]",

@@ -18,7 +18,8 @@ MatrixXd matern(Index count, double length) {
   MatrixXd k(count, count);
   for (Index i = 0; i < count; ++i) {
     for (Index j = 0; j < count; ++j) {
-      const double x = std::sqrt(5.0) * std::abs(static_cast<double>(i - j)) / static_cast<double>(count - 1) / length;
+      const double x =
+          std::sqrt(5.0) * std::abs(static_cast<double>(i - j)) / static_cast<double>(count - 1) / length;
       k(i, j) = (1.0 + x + x * x / 3.0) * std::exp(-x);
     }
   }
@@ -41,7 +42,8 @@ MatrixXd square_root(const MatrixXd& covariance) {
 }
 
 MatrixXd of_unit_size(const MatrixXd& columns) {
-  const double size = std::sqrt(columns.squaredNorm() / static_cast<double>(std::max<Index>(1, columns.rows())));
+  const double size =
+      std::sqrt(columns.squaredNorm() / static_cast<double>(std::max<Index>(1, columns.rows())));
   return size > 0.0 ? MatrixXd(columns / size) : MatrixXd();
 }
 
@@ -50,7 +52,8 @@ constexpr double lengths[] = {0.15, 0.3, 0.6};
 void add(std::vector<Discrepancy>& all, const std::string& variable, const MatrixXd& hats) {
   Discrepancy d{variable, {}};
   for (const double length : lengths) {
-    MatrixXd columns = of_unit_size(hats * square_root(without_plain_parts(matern(hats.cols(), length), true)));
+    MatrixXd columns =
+        of_unit_size(hats * square_root(without_plain_parts(matern(hats.cols(), length), true)));
     if (columns.size() > 0 && columns.allFinite()) d.columns.push_back(std::move(columns));
   }
   if (!d.columns.empty()) all.push_back(std::move(d));
@@ -89,7 +92,8 @@ Discrepancy other(const Model& model, const Data& data) {
     MatrixXd own = MatrixXd::Zero(static_cast<Index>(d.size()), count);
     const Index first = (std::ranges::find(data.series, k) - data.series.begin()) * stations;
     for (std::size_t i = 0; i < d.size(); ++i)
-      add_hats(high > low ? (d[i] - low) / (high - low) : 0.0, 1.0, stations, first, own.row(static_cast<Index>(i)));
+      add_hats(high > low ? (d[i] - low) / (high - low) : 0.0, 1.0, stations, first,
+               own.row(static_cast<Index>(i)));
     return own;
   };
   const MatrixXd columns = data.whiten(hats, count);

@@ -20,8 +20,9 @@ using Eigen::VectorXd;
 
 // Shares of the prior.                                                                   theory.md (I.37)
 constexpr double of_nothing = 0.2, of_catalogue = 0.45, of_outside = 0.25, of_other = 0.1;
-constexpr double of_one_more = 0.1;       // of a second cause beside the first
-const double least_size = std::log(0.3);  // ln of the least size of a cause, in standard deviations of a reading
+constexpr double of_one_more = 0.1;  // of a second cause beside the first
+const double least_size =
+    std::log(0.3);  // ln of the least size of a cause, in standard deviations of a reading
 
 double log_sum(const std::vector<double>& logs) {
   const double largest = *std::ranges::max_element(logs);
@@ -38,7 +39,8 @@ struct Correlation {
 
 std::vector<Correlation> correlations(const Data& data) {
   std::vector<Correlation> all{{}};
-  if (!data.noise.filter.empty() || !data.placings.empty()) return all;  // what is known of it is in the whitening
+  if (!data.noise.filter.empty() || !data.placings.empty())
+    return all;  // what is known of it is in the whitening
   constexpr double independent = 0.5;
   all.front().prior = independent;
   const auto smooth = {0.3, 0.6, 0.9};
@@ -109,7 +111,8 @@ class Evidence {
 
   [[nodiscard]] double largest_force() const {
     double largest = 0.0;
-    for (const std::size_t k : data_.series) largest = std::max(largest, data_.measured[k].cwiseAbs().maxCoeff());
+    for (const std::size_t k : data_.series)
+      largest = std::max(largest, data_.measured[k].cwiseAbs().maxCoeff());
     return largest;
   }
 
@@ -131,8 +134,9 @@ class Evidence {
     const Projection others(jacobian.leftCols(base));
     for (Index k = 0; k < jacobian.cols(); ++k) {
       const double own = k < base || !is_size(fit, k) ? 0.0 : others.without(jacobian.col(k)).norm();
-      jacobian.col(k) *= own > 0.0 ? 2.0 * size * (most_ - least_size) / (std::sqrt(2.0 * std::numbers::pi) * own)
-                                   : flat_deviation(model_, fit.settings[static_cast<std::size_t>(k)]);
+      jacobian.col(k) *= own > 0.0
+                             ? 2.0 * size * (most_ - least_size) / (std::sqrt(2.0 * std::numbers::pi) * own)
+                             : flat_deviation(model_, fit.settings[static_cast<std::size_t>(k)]);
     }
     return jacobian;
   }
@@ -140,7 +144,8 @@ class Evidence {
   /// Whether a number is the first one of an effect.
   [[nodiscard]] static bool is_size(const Fit& fit, Index k) {
     const std::string& key = fit.settings[static_cast<std::size_t>(k)].parameter->key;
-    return std::ranges::any_of(catalogue(), [&](const Effect& e) { return e.numbers.front().parameter.key == key; });
+    return std::ranges::any_of(catalogue(),
+                               [&](const Effect& e) { return e.numbers.front().parameter.key == key; });
   }
 
   [[nodiscard]] White whitened(const Correlation& c, const VectorXd& residual, const MatrixXd& jacobian,
@@ -153,7 +158,8 @@ class Evidence {
       Index row = 0;
       for (const std::size_t k : data_.series) {
         const Index n = data_.rows_of(k);
-        const WhitenedRows rows = without_correlation(model_.series()[k], c.smooth, c.length, all.middleRows(row, n));
+        const WhitenedRows rows =
+            without_correlation(model_.series()[k], c.smooth, c.length, all.middleRows(row, n));
         all.middleRows(row, n) = rows.rows;
         w.logarithm += rows.log_determinant;
         row += n;
@@ -228,8 +234,8 @@ double prior_of(const std::string& variable, const std::vector<Discrepancy>& all
 }
 
 /// Hypotheses of one model: alone and with every function, those of a variable together.
-void add_with_functions(const Model& model, const Data& data, const Evidence& evidence, const FittedModel& one,
-                        std::vector<CauseHypothesis>& all) {
+void add_with_functions(const Model& model, const Data& data, const Evidence& evidence,
+                        const FittedModel& one, std::vector<CauseHypothesis>& all) {
   Fit fit = one.fit;
   if (fit.evaluation.force.empty()) fit.evaluation = model.evaluate(fit.settings, fit.parameters());
   if (!fit.evaluation.complete) return;
@@ -237,7 +243,8 @@ void add_with_functions(const Model& model, const Data& data, const Evidence& ev
   const std::vector<Discrepancy> functions = discrepancies(model, data, fit);
   std::map<std::string, std::vector<double>> by_variable;
   for (const Discrepancy& d : functions)
-    by_variable[d.variable].push_back(std::log(beside * prior_of(d.variable, functions)) + evidence.of(fit, d));
+    by_variable[d.variable].push_back(std::log(beside * prior_of(d.variable, functions)) +
+                                      evidence.of(fit, d));
   for (const auto& [variable, logs] : by_variable) all.push_back({one.effects, variable, log_sum(logs), 0.0});
 }
 
@@ -256,7 +263,8 @@ std::vector<CauseHypothesis> weigh_hypotheses(const Model& model, const Data& da
   constexpr std::size_t most = 3;  // models with effects beside which functions stand
   std::size_t taken = 0;
   for (const std::size_t k : order) {
-    if (models[k].effects.empty() || taken++ < most) add_with_functions(model, data, evidence, models[k], all);
+    if (models[k].effects.empty() || taken++ < most)
+      add_with_functions(model, data, evidence, models[k], all);
   }
   std::vector<double> logs;
   for (const CauseHypothesis& h : all) logs.push_back(h.log_evidence);
@@ -266,7 +274,8 @@ std::vector<CauseHypothesis> weigh_hypotheses(const Model& model, const Data& da
   return all;
 }
 
-double probability_of_any(const std::vector<CauseHypothesis>& hypotheses, const std::vector<std::string>& names) {
+double probability_of_any(const std::vector<CauseHypothesis>& hypotheses,
+                          const std::vector<std::string>& names) {
   double sum = 0.0;
   for (const CauseHypothesis& h : hypotheses) {
     const bool any = std::ranges::any_of(

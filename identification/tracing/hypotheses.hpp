@@ -11,8 +11,9 @@ namespace snare::identification {
 struct CauseHypothesis {
   std::vector<std::string> effects;  ///< of the catalogue
   std::string discrepancy;           ///< variable of an unknown function, see Discrepancy; empty: none
-  double log_evidence = 0.0;  ///< of the readings, its own prior included, up to a constant of all hypotheses [-]
-  double probability = 0.0;   ///< of all hypotheses [-]
+  double log_evidence =
+      0.0;  ///< of the readings, its own prior included, up to a constant of all hypotheses [-]
+  double probability = 0.0;  ///< of all hypotheses [-]
 };
 
 /// A model that was fitted: the base model's numbers first, then those of its effects.

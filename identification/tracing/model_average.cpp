@@ -49,14 +49,15 @@ double mixture_quantile(const std::vector<NormalPart>& parts, double p) {
   while (high - low > narrow) {
     const double middle = 0.5 * (low + high);
     double below = 0.0;
-    for (const NormalPart& part : parts) below += part.weight * normal_tail((part.mean - middle) / part.deviation);
+    for (const NormalPart& part : parts)
+      below += part.weight * normal_tail((part.mean - middle) / part.deviation);
     (below < p * weight ? low : high) = middle;
   }
   return 0.5 * (low + high);
 }
 
-std::optional<Interval> interval_over_rivals(const Fit& final, std::size_t which, const std::vector<RoundFits>& rounds,
-                                             double inflation) {
+std::optional<Interval> interval_over_rivals(const Fit& final, std::size_t which,
+                                             const std::vector<RoundFits>& rounds, double inflation) {
   const Parameter& number = *final.settings[which].parameter;
   const std::optional<Place> told = place_of(final, number);
   if (!told) return std::nullopt;
@@ -82,7 +83,8 @@ std::optional<Interval> interval_over_candidates(const Fit& final, std::size_t w
   const std::optional<Place> told = place_of(final, *final.settings[which].parameter);
   if (!told) return std::nullopt;
   std::vector<NormalPart> parts{{1.0, told->coordinate, told->deviation}};
-  const auto seen = std::ranges::count_if(candidates, [](const Candidate& c) { return c.score.shift.size() > 0; });
+  const auto seen =
+      std::ranges::count_if(candidates, [](const Candidate& c) { return c.score.shift.size() > 0; });
   const double price = std::log(static_cast<double>(final.residual.size()));
   for (const Candidate& c : candidates) {
     if (c.score.shift.size() == 0) continue;

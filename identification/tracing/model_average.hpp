@@ -28,7 +28,8 @@ using Interval = std::pair<double, double>;
 /// inflation: chi2 that it leaves over that of noise, >= 1 [-]. Absent where the readings do not tell the number or no rival
 /// has it.
 [[nodiscard]] std::optional<Interval> interval_over_rivals(const Fit& final, std::size_t which,
-                                                           const std::vector<RoundFits>& rounds, double inflation);
+                                                           const std::vector<RoundFits>& rounds,
+                                                           double inflation);
 
 /// Likewise of a model beside which no effect was named, whether one is missing or not: its own distribution and, to first
 /// order, those with every effect that was asked for.                                          theory.md (I.13)

@@ -30,7 +30,8 @@ FittedNumber number_of(const Model& model, const Setting& s) {
 }
 
 /// Its standard error and 95 % either way, by Student's t of the noise's degrees of freedom, as far as that is admissible.
-void give_interval(const Model& model, const Setting& s, double deviation, double noise_dof, FittedNumber& n) {
+void give_interval(const Model& model, const Setting& s, double deviation, double noise_dof,
+                   FittedNumber& n) {
   const Parameter& p = *s.parameter;
   const double reach = student_quantile(0.025, noise_dof) * deviation;
   const double lower = s.coordinate - reach, upper = s.coordinate + reach;
@@ -117,10 +118,11 @@ std::vector<Finding> number_findings(const Model& model, const Fit& fit) {
       continue;
     }
     const bool lower = n.bound == AtBound::lower;
-    Finding f{.kind = FindingKind::on_bound, .key = n.key, .unit = n.unit, .value = n.value, .limit = n.value};
-    f.what =
-        fmt::format("{} = {:.4g}{}{} stands on its {} bound: the readings ask for {} than is admissible", n.key,
-                    n.value, n.unit.empty() ? "" : " ", n.unit, lower ? "lower" : "upper", lower ? "less" : "more");
+    Finding f{
+        .kind = FindingKind::on_bound, .key = n.key, .unit = n.unit, .value = n.value, .limit = n.value};
+    f.what = fmt::format("{} = {:.4g}{}{} stands on its {} bound: the readings ask for {} than is admissible",
+                         n.key, n.value, n.unit.empty() ? "" : " ", n.unit, lower ? "lower" : "upper",
+                         lower ? "less" : "more");
     findings.push_back(std::move(f));
   }
   return findings;
@@ -224,7 +226,8 @@ Left in_forces(const Data& data, const Fit& fit) {
     const Eigen::Index n = data.rows_of(k);
     // Of a published fit its four numbers, times the scatter.
     const auto seen = [&](const Eigen::MatrixXd& forces_of_it) -> Eigen::MatrixXd {
-      return data.noise.summarised(k) ? data.noise.sigma[k] * data.noise.whiten(k, forces_of_it) : forces_of_it;
+      return data.noise.summarised(k) ? data.noise.sigma[k] * data.noise.whiten(k, forces_of_it)
+                                      : forces_of_it;
     };
     forces.residual.segment(row, n) = seen(left[i]);
     if (!by.empty()) forces.jacobian.middleRows(row, n) = seen(by[i]);
@@ -280,10 +283,12 @@ Squares left_out(const Model& model, const Data& data, const Fit& fit, const Lef
       const Eigen::MatrixXd rest = fit.jacobian(in, Eigen::all) * directions;
       const Eigen::MatrixXd columns = all.jacobian(out, Eigen::all) * directions;
       const numerics::SymmetricEigen told = numerics::symmetric_eigen(rest.transpose() * rest);
-      const Eigen::VectorXd score = told.vectors.transpose() * (rest.transpose() * Eigen::VectorXd(fit.residual(in)));
+      const Eigen::VectorXd score =
+          told.vectors.transpose() * (rest.transpose() * Eigen::VectorXd(fit.residual(in)));
       const Eigen::Index own = (told.values.array() < least_told).count();
       const Eigen::Index others = score.size() - own;
-      left -= columns * (told.vectors.rightCols(others) * score.tail(others).cwiseQuotient(told.values.tail(others)));
+      left -= columns *
+              (told.vectors.rightCols(others) * score.tail(others).cwiseQuotient(told.values.tail(others)));
       if (own > 0) left = Projection(columns * told.vectors.leftCols(own)).without(left);
     }
     squares.sum += left.squaredNorm();

@@ -57,7 +57,8 @@ struct ModelError {
 /// all: every series; heldout: one a series; predictions: of the fitted model, one a series; model: of the
 /// fitted series.
 [[nodiscard]] ModelError model_error(const std::vector<Series>& all, const std::vector<bool>& heldout,
-                                     const std::vector<Prediction>& predictions, const Model& model, const Fit& fit);
+                                     const std::vector<Prediction>& predictions, const Model& model,
+                                     const Fit& fit);
 
 /// Root mean square of measured less computed forces over the fitted readings [N].
 [[nodiscard]] double fitted_rmse(const Data& data, const Evaluation& evaluation);

@@ -21,8 +21,8 @@ struct Design {
 constexpr int points_a_leg = 15;
 
 /// Load and unload over the highest travel of the present tests, at their mean speed times `speed`.
-Design design(const Series& present, double travel, double duration, double fraction, double closer, double speed,
-              coupling::PushDirection direction) {
+Design design(const Series& present, double travel, double duration, double fraction, double closer,
+              double speed, coupling::PushDirection direction) {
   Design d;
   d.series.name = "proposed";
   d.series.test = present.test;
@@ -42,8 +42,9 @@ Design design(const Series& present, double travel, double duration, double frac
   d.words = fmt::format("push at {:.0f} mm from the left {}, {:.3g} mm and back", 1e3 * t.contact_position,
                         supports ? "support" : "mount", 1e3 * travel);
   if (closer != 0.0) {
-    d.words += fmt::format(", the {} {:.3g} mm {} ({:.4g} mm)", supports ? "supports" : "mounts",
-                           1e3 * std::abs(closer), closer > 0.0 ? "closer" : "farther apart", 1e3 * t.mount.span);
+    d.words +=
+        fmt::format(", the {} {:.3g} mm {} ({:.4g} mm)", supports ? "supports" : "mounts",
+                    1e3 * std::abs(closer), closer > 0.0 ? "closer" : "farther apart", 1e3 * t.mount.span);
   }
   if (direction != present.test.pusher.direction) {
     d.words += direction == coupling::PushDirection::inward ? ", against the bulge" : ", with the bulge";
@@ -56,16 +57,17 @@ Design design(const Series& present, double travel, double duration, double frac
 double largest_stress(const Evaluation& evaluation, const std::vector<Series>& series) {
   double stress = 0.0;
   for (std::size_t k = 0; k < std::min(series.size(), evaluation.predictions.size()); ++k) {
-    stress =
-        std::max(stress, coupling::largest_stress(series[k].test.wire, evaluation.predictions[k].curve.curve.points));
+    stress = std::max(
+        stress, coupling::largest_stress(series[k].test.wire, evaluation.predictions[k].curve.curve.points));
   }
   return stress;
 }
 
 }  // namespace
 
-NextExperiment next_experiment(const Model& model, const std::vector<Setting>& one, const std::vector<Setting>& other,
-                               const std::vector<std::string>& names, double sigma) {
+NextExperiment next_experiment(const Model& model, const std::vector<Setting>& one,
+                               const std::vector<Setting>& other, const std::vector<std::string>& names,
+                               double sigma) {
   const Series& present = model.series().front();
   double travel = 0.0;
   double duration = 0.0;
@@ -86,7 +88,8 @@ NextExperiment next_experiment(const Model& model, const std::vector<Setting>& o
     designs.push_back(design(present, 1.5 * travel, duration, fraction, 0.0, 1.0, along));
     if (duration > 0.0) designs.push_back(design(present, travel, duration, fraction, 0.0, 10.0, along));
   }
-  if (supports) designs.push_back(design(present, travel, duration, 0.5, -0.5 * present.test.mount.span, 1.0, along));
+  if (supports)
+    designs.push_back(design(present, travel, duration, 0.5, -0.5 * present.test.mount.span, 1.0, along));
 
   // Annealed stainless steel yields at a tenth of what the strongest wire bears (205 MPa, ASTM A580).
   constexpr double noticeable = 1.05, share = 0.1;
@@ -99,7 +102,8 @@ NextExperiment next_experiment(const Model& model, const std::vector<Setting>& o
     const Evaluation a = alone.evaluate(one);
     const Evaluation b = alone.evaluate(other);
     if (!a.complete || !b.complete) continue;
-    const double difference = (a.force[0] - b.force[0]).norm() / std::sqrt(static_cast<double>(a.force[0].size()));
+    const double difference =
+        (a.force[0] - b.force[0]).norm() / std::sqrt(static_cast<double>(a.force[0].size()));
     if (difference <= best.difference) continue;
     best.difference = difference;
     best.what = d.words;
@@ -116,8 +120,9 @@ NextExperiment next_experiment(const Model& model, const std::vector<Setting>& o
     best.what = "no push of this kind separates them; " + checks;
   } else {
     if (stress > std::max(noticeable * known, share * wire::strongest_wire(present.test.wire.diameter))) {
-      best.what += fmt::format(", which loads the wire to {:.3g} MPa after {:.3g} MPa so far and may break it",
-                               stress / 1e6, known / 1e6);
+      best.what +=
+          fmt::format(", which loads the wire to {:.3g} MPa after {:.3g} MPa so far and may break it",
+                      stress / 1e6, known / 1e6);
     }
     best.what += fmt::format(" (there they differ by {:.3g} N, {:.2g} times the noise of a reading); or {}",
                              best.difference, best.sigmas, checks);

@@ -20,7 +20,7 @@ struct NextExperiment {
 /// settles an effect by itself. What loads the wire more than the present tests do says so.
 /// names: of the two effects. sigma: of a reading [N].
 [[nodiscard]] NextExperiment next_experiment(const Model& model, const std::vector<Setting>& one,
-                                             const std::vector<Setting>& other, const std::vector<std::string>& names,
-                                             double sigma);
+                                             const std::vector<Setting>& other,
+                                             const std::vector<std::string>& names, double sigma);
 
 }  // namespace snare::identification

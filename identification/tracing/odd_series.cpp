@@ -21,7 +21,8 @@ Data without(const Data& data, std::size_t series) {
 }
 
 /// The better of the fits from two starts.
-Fit fit_from(const Model& model, const Data& data, const std::vector<Setting>& one, const std::vector<Setting>& other) {
+Fit fit_from(const Model& model, const Data& data, const std::vector<Setting>& one,
+             const std::vector<Setting>& other) {
   Fit best = fit(model, data, one);
   Fit second = fit(model, data, other);
   const bool better = second.report.usable() && (!best.report.usable() || second.chi2 < best.chi2);
@@ -62,10 +63,11 @@ std::optional<Finding> series_of_another_specimen(const Model& model, const Data
   }
   if (!odd) return std::nullopt;
   const std::string& name = model.series()[*odd].name;
-  const Fit wire = with_own(model, data, rest, name, {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N"});
+  const Fit wire =
+      with_own(model, data, rest, name, {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N"});
   if (!wire.report.usable() || !test_residuals(model, data, wire).like_noise()) return std::nullopt;
-  for (const std::string_view key : {"reading.displacement_offset_mm", "contact_position.shift_mm", "wire.length_mm",
-                                     "reading.force_gain", "reading.force_offset_N"}) {
+  for (const std::string_view key : {"reading.displacement_offset_mm", "contact_position.shift_mm",
+                                     "wire.length_mm", "reading.force_gain", "reading.force_offset_N"}) {
     if (!progress.go_on("what sets series " + name + " apart")) return std::nullopt;
     const Fit other = with_own(model, data, rest, name, {key});
     if (other.report.usable() && other.bic() < wire.bic()) return std::nullopt;
@@ -74,7 +76,8 @@ std::optional<Finding> series_of_another_specimen(const Model& model, const Data
   const double bending = model.shown(wire.settings[rest.free]);
   const double axial = model.shown(wire.settings[rest.free + 1]);
   found.what = fmt::format(
-      "series {} is of another wire: without it chi2/dof is {:.2f}, by itself it has EI = {:.3g} N m^2 and EA = {:.3g} "
+      "series {} is of another wire: without it chi2/dof is {:.2f}, by itself it has EI = {:.3g} N m^2 and "
+      "EA = {:.3g} "
       "N",
       name, rest.chi2 / std::max(1.0, rest.dof()), bending, axial);
   return found;

@@ -12,7 +12,8 @@ namespace snare::identification {
 class Progress {
  public:
   /// observer: sees every stage; false stops. May be empty.
-  explicit Progress(std::function<bool(const std::string& stage)> observer) : observer_(std::move(observer)) {}
+  explicit Progress(std::function<bool(const std::string& stage)> observer)
+      : observer_(std::move(observer)) {}
 
   /// Begins a stage; false once the observer has said so.
   [[nodiscard]] bool go_on(const std::string& stage) {

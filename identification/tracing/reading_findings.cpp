@@ -11,11 +11,13 @@ namespace snare::identification {
 
 namespace {
 
-constexpr double weight_from = 0.05;       // of the largest computed force: readings below it say nothing of the sign
+constexpr double weight_from =
+    0.05;  // of the largest computed force: readings below it say nothing of the sign
 constexpr double nearly_all_turned = 0.8;  // of these readings
 
 /// Share of the readings whose sign is against that of the computed force, of those where it counts; nothing without any.
-std::optional<double> share_against(const std::vector<double>& measured, const std::vector<double>& computed) {
+std::optional<double> share_against(const std::vector<double>& measured,
+                                    const std::vector<double>& computed) {
   double largest = 0.0, count = 0.0, against = 0.0;
   for (const double f : computed) largest = std::max(largest, std::abs(f));
   for (std::size_t i = 0; i < std::min(measured.size(), computed.size()); ++i) {
@@ -65,7 +67,8 @@ Ratios ratios_of(const Model& model, const Fit& fit) {
   for (std::size_t k = 0; k < fit.free; ++k) {
     const Setting& s = fit.settings[k];
     if (!is_stiffness(*s.parameter)) continue;
-    const bool bound = at_bound(s.coordinate, model.lower(*s.parameter), model.upper(*s.parameter)) != AtBound::none;
+    const bool bound =
+        at_bound(s.coordinate, model.lower(*s.parameter), model.upper(*s.parameter)) != AtBound::none;
     ratios.bound = ratios.bound || bound;
     if (bound || !fit.rank.is_known(k)) continue;
     ratios.log.push_back(s.coordinate);
@@ -121,8 +124,8 @@ struct SlipTrial {
 };
 
 /// The fit of one slip, if it does: compared with chi2 of the fit as it is.
-std::optional<SlipTrial> try_slip(const Model& model, const Data& data, const Fit& base, double force, double travel,
-                                  double chi2) {
+std::optional<SlipTrial> try_slip(const Model& model, const Data& data, const Fit& base, double force,
+                                  double travel, double chi2) {
   constexpr double plausible = 3.0;                         // between the largest forces
   constexpr double much_better = 0.2;                       // of chi2
   const double near = std::log(travel == 1.0 ? 1.3 : 2.0);  // of the stiffnesses to the declared ones
@@ -130,11 +133,13 @@ std::optional<SlipTrial> try_slip(const Model& model, const Data& data, const Fi
   const Rescaled now = rescaled(model, data, force, travel);
   const Evaluation declared = now.model.evaluate({});
   const double measured = peak_of(now.data.measured), computed = peak_of(declared.force);
-  if (!declared.complete || !(computed > 0.0) || std::abs(std::log(measured / computed)) > std::log(plausible))
+  if (!declared.complete || !(computed > 0.0) ||
+      std::abs(std::log(measured / computed)) > std::log(plausible))
     return std::nullopt;
   std::vector<Setting> start = base.fitted();
   for (Setting& s : start)
-    s.coordinate = s.parameter->coordinate(now.model.declared(*s.parameter), now.model.declared(*s.parameter));
+    s.coordinate =
+        s.parameter->coordinate(now.model.declared(*s.parameter), now.model.declared(*s.parameter));
   FitOptions options;
   options.max_iterations = 20;
   const Fit trial = fit(now.model, now.data, start, {}, options);
@@ -150,7 +155,8 @@ std::optional<SlipTrial> try_slip(const Model& model, const Data& data, const Fi
 
 }  // namespace
 
-std::vector<Finding> sign_findings(const std::vector<Series>& series, const std::vector<std::vector<double>>& declared,
+std::vector<Finding> sign_findings(const std::vector<Series>& series,
+                                   const std::vector<std::vector<double>>& declared,
                                    const SolverSettings& solver) {
   std::vector<Finding> findings;
   for (std::size_t k = 0; k < series.size(); ++k) {
@@ -174,8 +180,9 @@ std::vector<Finding> sign_findings(const std::vector<Series>& series, const std:
                              100.0 * *against)
                : std::string();
     const std::string travels = "displacement_mm goes below zero only, where it should count along the push";
-    f.what = fmt::format("{}: {}{}{}; turn the sign of the readings round, in a file by scale = {{ \"COLUMN\" = -1 }}",
-                         key, down ? travels : "", down && turned ? ", and " : "", forces);
+    f.what = fmt::format(
+        "{}: {}{}{}; turn the sign of the readings round, in a file by scale = {{ \"COLUMN\" = -1 }}", key,
+        down ? travels : "", down && turned ? ", and " : "", forces);
     findings.push_back(std::move(f));
   }
   return findings;
@@ -218,10 +225,11 @@ std::vector<Finding> unit_findings(const Model& model, const Data& data, const F
     }
   }
   if (!std::isfinite(best.distance)) return {};
-  return {slip_finding(of_force ? "force_N" : "displacement_mm", best.factor, best.factor,
-                       fmt::format("it looks like {}: times {:.4g} the readings are fitted by stiffnesses near the "
-                                   "declared ones",
-                                   best.words, best.factor))};
+  return {slip_finding(
+      of_force ? "force_N" : "displacement_mm", best.factor, best.factor,
+      fmt::format("it looks like {}: times {:.4g} the readings are fitted by stiffnesses near the "
+                  "declared ones",
+                  best.words, best.factor))};
 }
 
 }  // namespace snare::identification

@@ -62,8 +62,8 @@ Eigen::SparseMatrix<double> hats_of(const Model& model, const Data& data) {
     }
     for (std::size_t c = first; c < commons.size(); ++c) {
       commons[c].first = columns;
-      commons[c].hats =
-          static_cast<Eigen::Index>(std::clamp<std::size_t>(commons[c].readings / readings_a_hat, 1, most_hats));
+      commons[c].hats = static_cast<Eigen::Index>(
+          std::clamp<std::size_t>(commons[c].readings / readings_a_hat, 1, most_hats));
       columns += commons[c].hats;
     }
   }
@@ -78,8 +78,8 @@ Eigen::SparseMatrix<double> hats_of(const Model& model, const Data& data) {
         entries.emplace_back(row, common.first, 1.0);
         continue;
       }
-      const double at =
-          std::clamp((d[i] - common.low) / (common.high - common.low), 0.0, 1.0) * static_cast<double>(common.hats - 1);
+      const double at = std::clamp((d[i] - common.low) / (common.high - common.low), 0.0, 1.0) *
+                        static_cast<double>(common.hats - 1);
       const auto j = std::min(static_cast<Eigen::Index>(at), common.hats - 2);
       const double part = at - static_cast<double>(j);
       entries.emplace_back(row, common.first + j, 1.0 - part);
@@ -181,7 +181,8 @@ Remainder remainder(const Model& model, const Data& data, const Fit& fit) {
   const Eigen::VectorXd values = v * s.cwiseInverse().asDiagonal() * part;
   Eigen::VectorXd function = hats * (scale.asDiagonal() * values);
   if (fit.jacobian.cols() > 0) {
-    function -= plain_jacobian(data, fit, hats.rows()) * numerics::least_squares(fit.jacobian, white * values);
+    function -=
+        plain_jacobian(data, fit, hats.rows()) * numerics::least_squares(fit.jacobian, white * values);
   }
   if (!data.placings.empty()) function = rows_of(data, data.placed(split(data, function), 1));
   const double size = std::sqrt(function.squaredNorm() / static_cast<double>(function.size()));

@@ -10,11 +10,11 @@ namespace snare::identification {
 
 /// Tests of what is left after a fit.                                                theory.md (I.3), (I.9)
 struct ResidualTests {
-  double runs = 1.0;                ///< p of the number of runs of one sign
-  double ljung_box = 1.0;           ///< p of the autocorrelations
-  double lack_of_fit = 1.0;         ///< p of chi2 against the noise; against replicates of the smooth part alone
+  double runs = 1.0;         ///< p of the number of runs of one sign
+  double ljung_box = 1.0;    ///< p of the autocorrelations
+  double lack_of_fit = 1.0;  ///< p of chi2 against the noise; against replicates of the smooth part alone
   bool against_replicates = false;  ///< the noise is that of replicates, which differ smoothly themselves
-  bool of_published = false;        ///< all series are published fits: lack_of_fit is that of their numbers (I.11)
+  bool of_published = false;  ///< all series are published fits: lack_of_fit is that of their numbers (I.11)
   std::optional<SummaryStatistics> published{};  ///< of these
   double rmse = 0.0;                             ///< of the residual [N]
   double noise = 0.0;                            ///< of a reading [N]
@@ -34,7 +34,9 @@ struct ResidualTests {
     return within_noise() || (!of_published && within(tolerance));
   }
   /// Nothing speaks against the model: what is left is like noise at 5 %, or within the tolerance [N].
-  [[nodiscard]] bool agrees(double tolerance) const { return p() > 0.05 || (!of_published && within(tolerance)); }
+  [[nodiscard]] bool agrees(double tolerance) const {
+    return p() > 0.05 || (!of_published && within(tolerance));
+  }
 };
 
 /// All tests of what this fit leaves in the fitted series.

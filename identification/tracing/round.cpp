@@ -17,10 +17,12 @@ namespace {
 
 constexpr double collinear = 0.95;         // |cos| above which effects are one class
 constexpr double same_direction = 0.9995;  // |cos| above which the refits of two effects end alike
-constexpr double indistinct_bic = 6.0;     // difference of BIC below which the likelihood does not decide (Kass and
-                                           // Raftery 1995); 98.6 % of a chi-square of one degree of freedom
-constexpr double separable_chi2 = 10.0;    // z^2 (1 - cos^2) above which a rival of the leader need not be refitted
-constexpr double least_fall = 0.9;         // of the root mean square error, which must fall below this share
+constexpr double indistinct_bic =
+    6.0;  // difference of BIC below which the likelihood does not decide (Kass and
+          // Raftery 1995); 98.6 % of a chi-square of one degree of freedom
+constexpr double separable_chi2 =
+    10.0;                           // z^2 (1 - cos^2) above which a rival of the leader need not be refitted
+constexpr double least_fall = 0.9;  // of the root mean square error, which must fall below this share
 constexpr double out_of_class_bic = 30.0;  // well beyond it
 constexpr double worthwhile_bic = 2.0;     // gain of BIC that an effect must bring
 constexpr std::size_t most_refits = 6;
@@ -31,7 +33,8 @@ constexpr double starts_tried = 10.0;  // an effect, by which the p of its refit
 // share of the best gain cannot lead and are not refitted.
 constexpr double refit_share = 0.4;
 constexpr double near_significance = 0.05;
-constexpr double most_ratio = 0.7;  // of the logarithm of a number that an effect moves, at the start of its refit
+constexpr double most_ratio =
+    0.7;  // of the logarithm of a number that an effect moves, at the start of its refit
 // Of the excess of chi2 over the degrees of freedom: where a refit takes more, no other minimum can be much better.
 constexpr double nearly_all = 0.95;
 
@@ -86,8 +89,8 @@ std::vector<std::vector<Setting>> starts_of(const Model& model, const Data& data
 
 /// The model with an effect added, fitted from each start; not usable where none of them gives a fit. A start that removes nearly all
 /// of the excess of chi2 ends the search, and a start that does not approach the best chi2 so far is abandoned.
-Fit refit(const Model& model, const Data& data, const Current& current, const Candidate& candidate, double rival,
-          Progress& progress) {
+Fit refit(const Model& model, const Data& data, const Current& current, const Candidate& candidate,
+          double rival, Progress& progress) {
   Fit best;
   best.chi2 = std::numeric_limits<double>::max();
   best.free = current.fit.free;
@@ -99,7 +102,8 @@ Fit refit(const Model& model, const Data& data, const Current& current, const Ca
     fitting.tolerance = 1e-4;
     fitting.rival = to_beat;
     fitting.progress = [&](int iteration, double) {
-      return progress.go_on(fmt::format("refit with {}: iteration {}", candidate.score.effect->name, iteration));
+      return progress.go_on(
+          fmt::format("refit with {}: iteration {}", candidate.score.effect->name, iteration));
     };
     Fit one = fit(model, data, start, {}, fitting);
     if (one.report.usable() && one.bic() < best.bic()) best = std::move(one);
@@ -115,8 +119,9 @@ void judge_plausibility(const Model& model, const Fit& current, const Fit& refit
   const Effect& effect = *candidate.score.effect;
   for (std::size_t k = 0; k < candidate.numbers.size(); ++k) {
     const FittedNumber& n = candidate.numbers[k];
-    const EffectNumber& range = *std::find_if(effect.numbers.begin(), effect.numbers.end(),
-                                              [&n](const EffectNumber& e) { return e.parameter.key == n.key; });
+    const EffectNumber& range =
+        *std::find_if(effect.numbers.begin(), effect.numbers.end(),
+                      [&n](const EffectNumber& e) { return e.parameter.key == n.key; });
     const Parameter& p = range.parameter;
     const double coordinate = refitted.settings[current.free + k].coordinate;
     const double width = model.upper(p) - model.lower(p);
@@ -124,31 +129,34 @@ void judge_plausibility(const Model& model, const Fit& current, const Fit& refit
     const bool at_bound = at_lower || model.upper(p) - coordinate < 1e-6 * width;
     if (n.value < range.plausible_lower || n.value > range.plausible_upper) {
       candidate.plausible = false;
-      candidate.why_implausible = fmt::format("{} = {:.4g} {}, plausible is {:g} to {:g}", n.key, n.value, n.unit,
-                                              range.plausible_lower, range.plausible_upper);
+      candidate.why_implausible = fmt::format("{} = {:.4g} {}, plausible is {:g} to {:g}", n.key, n.value,
+                                              n.unit, range.plausible_lower, range.plausible_upper);
     } else if (at_bound && !(effect.one_sided && at_lower)) {
       candidate.plausible = false;
-      candidate.why_implausible = fmt::format("{} = {:.4g} {} is at the end of what it may be", n.key, n.value, n.unit);
+      candidate.why_implausible =
+          fmt::format("{} = {:.4g} {} is at the end of what it may be", n.key, n.value, n.unit);
     }
   }
 }
 
 /// Why what an effect changes is not to be named; empty when it may be.
-std::string too_small(const Model& model, const Data& data, const Current& now, const Fit& refitted, double tolerance) {
+std::string too_small(const Model& model, const Data& data, const Current& now, const Fit& refitted,
+                      double tolerance) {
   const Fit& current = now.fit;
   const double before = fitted_rmse(data, current.evaluation);
   const double after = fitted_rmse(data, refitted.evaluation);
   if (refitted.dof() < fewest_dof(refitted.free)) {
-    return fmt::format("{} readings leave {:g} degrees of freedom beside {} numbers, {:g} are needed", data.rows(),
-                       refitted.dof(), refitted.free, fewest_dof(refitted.free));
+    return fmt::format("{} readings leave {:g} degrees of freedom beside {} numbers, {:g} are needed",
+                       data.rows(), refitted.dof(), refitted.free, fewest_dof(refitted.free));
   }
   double fall = before - after;
   // Noise hides how much of the error falls: the bound of what is left beside it tells.
   if (tolerance > 0.0 && fall <= tolerance && after <= least_fall * before)
     fall = now.left.upper - remainder(model, data, refitted).upper;
   if (tolerance > 0.0 && !worth_a_name(before, after, fall, tolerance)) {
-    return fmt::format("it lowers the error by {:.3g} N, which is not worth a name: needed are a tenth and {:.3g} N",
-                       before - after, tolerance);
+    return fmt::format(
+        "it lowers the error by {:.3g} N, which is not worth a name: needed are a tenth and {:.3g} N",
+        before - after, tolerance);
   }
   // What is beside the noise must fall by a tenth, as a root mean square.
   const double excess = current.chi2 - current.dof();
@@ -170,8 +178,8 @@ void judge(const Model& model, const Data& data, const HeldOut& heldout, const C
   candidate.delta_bic = refitted.bic() - current.bic();
   const auto added = static_cast<double>(refitted.free - current.free);
   if (added > 0.0 && refitted.chi2 < current.chi2)
-    candidate.refit_p =
-        std::min(1.0, demands.refits * fisher_tail((current.chi2 - refitted.chi2) / added, added, data.noise.dof));
+    candidate.refit_p = std::min(
+        1.0, demands.refits * fisher_tail((current.chi2 - refitted.chi2) / added, added, data.noise.dof));
   const std::vector<FittedNumber> all = numbers_of(model, refitted);
   candidate.numbers.assign(all.begin() + static_cast<std::ptrdiff_t>(current.free), all.end());
   judge_plausibility(model, current, refitted, candidate);
@@ -213,8 +221,8 @@ void classify(const Fit& current, double inflation, Round& round, const std::vec
       const bool leader = i == 0 && all[i].refitted && all[i].delta_bic < -worthwhile_bic;
       const bool rival = all[j].refitted && all[j].plausible && j < fits.size() &&
                          all[j].delta_bic - all[i].delta_bic < indistinct_bic * inflation;
-      const bool same =
-          j == i || (with_base ? absorbed(all[j]) : !absorbed(all[j]) && (leader ? rival : alike(all[i], all[j])));
+      const bool same = j == i || (with_base ? absorbed(all[j])
+                                             : !absorbed(all[j]) && (leader ? rival : alike(all[i], all[j])));
       if (!same) continue;
       placed[j] = true;
       all[j].class_index = round.classes.size();
@@ -254,8 +262,8 @@ double promised_chi2(const Candidate& c, const Fit& current) {
 
 /// Searches the start of every effect that these data may show, and sorts the effects by the chi2 that they promise; the likeliest
 /// come first, so that the others are abandoned early.
-void search_starts(const Model& model, const Data& data, const Current& current, std::vector<Candidate>& candidates,
-                   Progress& progress) {
+void search_starts(const Model& model, const Data& data, const Current& current,
+                   std::vector<Candidate>& candidates, Progress& progress) {
   const StartSearch search(model, data, current.fit);
   double least = current.fit.chi2;
   for (Candidate& c : candidates) {
@@ -269,8 +277,8 @@ void search_starts(const Model& model, const Data& data, const Current& current,
 }
 
 /// Whether an effect that changes the curves in the same way has been refitted and did not come near the best.
-bool as_one_that_lost(const std::vector<Candidate>& candidates, const std::vector<Fit>& fits, std::size_t which,
-                      double worst) {
+bool as_one_that_lost(const std::vector<Candidate>& candidates, const std::vector<Fit>& fits,
+                      std::size_t which, double worst) {
   for (std::size_t k = 0; k < which; ++k) {
     const bool lost = candidates[k].refitted && fits[k].chi2 >= worst;
     if (lost && cosine(candidates[k], candidates[which]) > same_direction) return true;
@@ -279,9 +287,10 @@ bool as_one_that_lost(const std::vector<Candidate>& candidates, const std::vecto
 }
 
 /// Refits the significant ones and what is nearly in their direction. One fit a candidate, empty where there was none.
-std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
-                            const AcceptanceCriteria& demands, std::vector<Candidate>& candidates,
-                            const std::string& round, Progress& progress) {
+std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut& heldout,
+                            const Current& current, const AcceptanceCriteria& demands,
+                            std::vector<Candidate>& candidates, const std::string& round,
+                            Progress& progress) {
   std::vector<Fit> fits(candidates.size());
   const std::optional<double> before = heldout.rmse(current.fit.settings);
   double least = current.fit.chi2;
@@ -312,15 +321,16 @@ std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut&
 
 /// Refits what has not been refitted and is so near the leader in direction that the scores cannot tell it from it.
 void refit_rivals(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
-                  const AcceptanceCriteria& demands, std::vector<Candidate>& candidates, std::vector<Fit>& fits,
-                  const std::string& round, Progress& progress) {
+                  const AcceptanceCriteria& demands, std::vector<Candidate>& candidates,
+                  std::vector<Fit>& fits, const std::string& round, Progress& progress) {
   const Candidate& leader = candidates.front();
   if (!leader.refitted || leader.score.direction.size() == 0) return;
   const double gain = current.fit.chi2 - fits.front().chi2;
   const std::optional<double> before = heldout.rmse(current.fit.settings);
   for (std::size_t i = 1; i < candidates.size(); ++i) {
     Candidate& c = candidates[i];
-    if (c.refitted || fits[i].free > 0 || !c.score.unobservable.empty() || c.score.direction.size() == 0) continue;
+    if (c.refitted || fits[i].free > 0 || !c.score.unobservable.empty() || c.score.direction.size() == 0)
+      continue;
     const double cosine = c.score.direction.dot(leader.score.direction);
     if (gain * (1.0 - cosine * cosine) > separable_chi2) continue;
     if (!progress.go_on(round + ": refit with " + c.score.effect->name)) break;
@@ -366,8 +376,8 @@ void add_first(const Model& model, const Data& data, const std::vector<Fit>& fit
   Round& round = result.round;
   const Candidate& first = round.candidates.front();
   round.added = first.score.effect->name;
-  round.reason = fmt::format("it has p = {:.2g} (all effects counted), the refit lowers BIC by {:.4g}", p_of(first),
-                             -first.delta_bic);
+  round.reason = fmt::format("it has p = {:.2g} (all effects counted), the refit lowers BIC by {:.4g}",
+                             p_of(first), -first.delta_bic);
   if (first.score.effect->trials != nullptr && !first.score.starts.empty())
     result.begun = with({}, *first.score.effect, first.score.starts.front());
   result.better = fits.front();
@@ -413,8 +423,9 @@ double fewest_dof(std::size_t numbers) {
   return std::max(5.0, 2.0 * static_cast<double>(numbers));
 }
 
-RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
-                          std::size_t number, const AcceptanceCriteria& asked, Progress& progress) {
+RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout,
+                          const Current& current, std::size_t number, const AcceptanceCriteria& asked,
+                          Progress& progress) {
   AcceptanceCriteria demands = asked;
   const double significance = demands.significance;
   const std::string name = fmt::format("round {}", number);
@@ -424,10 +435,12 @@ RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& h
   progress.clock(name + ": scores");
   if (current.search) {
     search_starts(model, data, current, round.candidates, progress);
-    demands.refits = starts_tried * static_cast<double>(std::ranges::count_if(round.candidates, worth_a_refit));
+    demands.refits =
+        starts_tried * static_cast<double>(std::ranges::count_if(round.candidates, worth_a_refit));
     progress.clock(name + ": where effects may begin");
   }
-  std::vector<Fit> fits = refit_best(model, data, heldout, current, demands, round.candidates, name, progress);
+  std::vector<Fit> fits =
+      refit_best(model, data, heldout, current, demands, round.candidates, name, progress);
   rank(round.candidates, fits, significance);
   double inflation = 1.0;
   if (!round.candidates.empty() && round.candidates.front().refitted) {
@@ -443,10 +456,12 @@ RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& h
     add_first(model, data, fits, result);
     return result;
   }
-  const bool any = std::any_of(round.candidates.begin(), round.candidates.end(),
-                               [&](const Candidate& c) { return worth_a_refit(c) && p_of(c) < significance; });
-  round.reason = any ? "the significant effects do not survive the refit (BIC, plausible values, size, held-out series)"
-                     : "no effect of the catalogue is significant";
+  const bool any = std::any_of(round.candidates.begin(), round.candidates.end(), [&](const Candidate& c) {
+    return worth_a_refit(c) && p_of(c) < significance;
+  });
+  round.reason =
+      any ? "the significant effects do not survive the refit (BIC, plausible values, size, held-out series)"
+          : "no effect of the catalogue is significant";
   return result;
 }
 

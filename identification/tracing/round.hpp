@@ -17,13 +17,14 @@ struct Candidate {
   Score score;
   std::optional<SearchedStart> searched;  ///< where a few steps from finite sizes led
   bool refitted = false;
-  double refit_p = 1.0;               ///< of the fall of chi2 in the refit [-], all effects and starts counted
-  double rmse = 0.0;                  ///< after the refit [N]
-  double delta_bic = 0.0;             ///< of the refit, against the round's model: negative is better
+  double refit_p = 1.0;    ///< of the fall of chi2 in the refit [-], all effects and starts counted
+  double rmse = 0.0;       ///< after the refit [N]
+  double delta_bic = 0.0;  ///< of the refit, against the round's model: negative is better
   std::vector<FittedNumber> numbers;  ///< of the effect after the refit
   bool plausible = true;
   std::string why_implausible;
-  std::string why_too_small;  ///< what it changes is not worth a name, or the readings cannot bear it; empty: it may be
+  std::string
+      why_too_small;  ///< what it changes is not worth a name, or the readings cannot bear it; empty: it may be
   std::optional<bool> heldout_improves;
   std::size_t class_index = 0;
 };
@@ -46,10 +47,12 @@ struct Round {
 /// A round with the fits behind it.
 struct RoundFits {
   Round round;
-  Fit better;                  ///< the model with the added effect
-  std::vector<Setting> begun;  ///< the added effect's numbers as first tried, of one that has only finite trials
-  std::vector<Fit> rivals;     ///< refits of the first effect's class, then all others that make sense, best first;
-                               ///< without their curves
+  Fit better;  ///< the model with the added effect
+  std::vector<Setting>
+      begun;  ///< the added effect's numbers as first tried, of one that has only finite trials
+  std::vector<Fit>
+      rivals;  ///< refits of the first effect's class, then all others that make sense, best first;
+               ///< without their curves
   std::vector<std::string> rival_names;  ///< of their effects
 };
 
@@ -60,14 +63,15 @@ struct Current {
   /// Its numbers where they were begun: those of the base fit, and the first trials of the effects added since. Beside
   /// another missing effect thresholds run astray, and what they are refitted from then holds them there. Empty: no such.
   std::vector<Setting> anew;
-  bool search = false;  ///< every effect is looked for from finite sizes: a base model that leaves more than noise
+  bool search =
+      false;  ///< every effect is looked for from finite sizes: a base model that leaves more than noise
 };
 
 /// What an effect must bring to be named.
 struct AcceptanceCriteria {
   double significance = 0.0;  ///< of its score after Holm
-  double tolerance = 0.0;     ///< by which the root mean square error must fall [N]; 0: by what is significant
-  double refits = 1.0;        ///< effects and starts among which refits are chosen
+  double tolerance = 0.0;  ///< by which the root mean square error must fall [N]; 0: by what is significant
+  double refits = 1.0;     ///< effects and starts among which refits are chosen
 };
 
 /// Degrees of freedom that must be left beside `numbers` fitted numbers.
@@ -76,7 +80,7 @@ struct AcceptanceCriteria {
 /// Scores of every effect beside `current`, refits of the best, ranking, classes, and the effect to add, if any.
 /// number: of the round, from 1.                                                      theory.md (I.4), (I.5)
 [[nodiscard]] RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout,
-                                        const Current& current, std::size_t number, const AcceptanceCriteria& demands,
-                                        Progress& progress);
+                                        const Current& current, std::size_t number,
+                                        const AcceptanceCriteria& demands, Progress& progress);
 
 }  // namespace snare::identification

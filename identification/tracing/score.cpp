@@ -18,7 +18,8 @@ constexpr double left_over = 1e-3;
 constexpr double least_change = 1e-3;
 
 bool fitted(const Fit& fit, const Parameter* p) {
-  return std::any_of(fit.settings.begin(), fit.settings.end(), [p](const Setting& s) { return s.parameter == p; });
+  return std::any_of(fit.settings.begin(), fit.settings.end(),
+                     [p](const Setting& s) { return s.parameter == p; });
 }
 
 /// A start of a refit within bounds and not wild: where the derivative says, at most half as much or twice.
@@ -215,11 +216,12 @@ void Scoring::by_trials(Score& score) const {
   score.shift = trials.front().shift;
   score.p = std::min(1.0, static_cast<double>(trials.size()) * student_tail(score.z, data_.noise.dof));
   choose_starts(score, trials);
-  const auto smallest = std::min_element(trials.begin(), trials.end(), [this](const Trial& a, const Trial& b) {
-    const bool a_shows = a.size >= needed_;
-    const bool b_shows = b.size >= needed_;
-    return a_shows != b_shows ? a_shows : a.size < b.size;
-  });
+  const auto smallest =
+      std::min_element(trials.begin(), trials.end(), [this](const Trial& a, const Trial& b) {
+        const bool a_shows = a.size >= needed_;
+        const bool b_shows = b.size >= needed_;
+        return a_shows != b_shows ? a_shows : a.size < b.size;
+      });
   if (first.parametrisation == Parametrisation::shift) {
     score.detectable = smallest->coordinates.front() * needed_ / smallest->size / first.unit_size;
   } else if (smallest->size >= needed_) {
@@ -242,7 +244,8 @@ void Scoring::choose_starts(Score& score, std::vector<Trial>& trials) const {
     if (score.starts.size() == 2) break;
     if (scalable && trial.z < 0.7 * score.z) break;
     std::vector<double> start = trial.coordinates;
-    double seen = 0.0;  // of the trial's size; where that cannot be chosen the fitted numbers wait for the threshold
+    double seen =
+        0.0;  // of the trial's size; where that cannot be chosen the fitted numbers wait for the threshold
     if (scalable) {
       seen = std::clamp(trial.z / trial.size, 0.05, 5.0);
       start.front() = std::clamp(start.front() * seen, model_.lower(first), model_.upper(first));
@@ -281,7 +284,8 @@ std::vector<Score> Scoring::run(double significance) {
 
 }  // namespace
 
-std::vector<Score> score_effects(const Model& model, const Data& data, const Fit& current, double significance) {
+std::vector<Score> score_effects(const Model& model, const Data& data, const Fit& current,
+                                 double significance) {
   return Scoring(model, data, current).run(significance);
 }
 

@@ -24,7 +24,7 @@ struct Score {
   double p = 1.0;                  ///< of the score, trials counted
   double adjusted_p = 1.0;         ///< by Holm, over the observable effects
   std::vector<RefitStart> starts;  ///< best first
-  Eigen::VectorXd direction;       ///< whitened change of the forces, fitted columns projected out, unit length
+  Eigen::VectorXd direction;  ///< whitened change of the forces, fitted columns projected out, unit length
   /// By how much the coordinates of the fitted numbers move, a unit of z, when the effect is added, to first order (in their units).
   Eigen::VectorXd shift;
   /// Smallest size of the first number (in its unit, as a change from the declared value for shifts and ratios) that

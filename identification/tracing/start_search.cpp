@@ -115,7 +115,8 @@ StartSearch::StartSearch(const Model& model, const Data& data, const Fit& curren
     if (!here.complete) continue;
     one.chi2 = data_.residual(here).squaredNorm();
     one.jacobian = data_.jacobian(here);
-    one.covariance = (one.jacobian.transpose() * one.jacobian).completeOrthogonalDecomposition().pseudoInverse();
+    one.covariance =
+        (one.jacobian.transpose() * one.jacobian).completeOrthogonalDecomposition().pseudoInverse();
     beside_.push_back(std::move(one));
   }
 }
@@ -177,7 +178,8 @@ std::optional<SearchedStart> StartSearch::best(const Effect& effect, double riva
   if (!found) return found;
   // Where derivatives need whole curves, only the refit takes steps.
   const std::vector<Series> with = coarse_.apply(found->settings).series;
-  const bool cheap = std::ranges::all_of(with, [](const Series& s) { return coupling::differentiable(s.test); });
+  const bool cheap =
+      std::ranges::all_of(with, [](const Series& s) { return coupling::differentiable(s.test); });
   if (cheap) {
     FitOptions few;
     few.max_iterations = few_steps;
@@ -185,7 +187,8 @@ std::optional<SearchedStart> StartSearch::best(const Effect& effect, double riva
     few.rival = rival / readings_;
     few.progress = [&](int, double) { return progress.go_on(stage); };
     const Fit reached = fit(coarse_, data_, found->settings, {}, few);
-    if (reached.report.usable() && reached.chi2 < found->chi2) found = SearchedStart{reached.fitted(), reached.chi2};
+    if (reached.report.usable() && reached.chi2 < found->chi2)
+      found = SearchedStart{reached.fitted(), reached.chi2};
   }
   found->chi2 *= readings_;
   return found;

@@ -22,7 +22,8 @@ class StartSearch {
   StartSearch(const Model& model, const Data& data, const Fit& current);
 
   /// The best start of an effect; none where it could not be computed from any. rival: chi2 [-] to come near to, 0: none.
-  [[nodiscard]] std::optional<SearchedStart> best(const Effect& effect, double rival, Progress& progress) const;
+  [[nodiscard]] std::optional<SearchedStart> best(const Effect& effect, double rival,
+                                                  Progress& progress) const;
 
  private:
   /// Values of the fitted numbers, with the derivatives of the residual there.

@@ -1,5 +1,6 @@
 #include "identification/tracing/trace.hpp"
 
+#include "base/parallel.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/fitting/conditions.hpp"
 #include "identification/fitting/statistics.hpp"
@@ -26,6 +27,9 @@ SolverSettings for_search(const SolverSettings& asked) {
   search.elements = std::min(128, asked.elements);
   return search;
 }
+
+/// Thrown where `TraceOptions::stop` has ended curves.
+struct Stopped {};
 
 /// A trace under way.
 class Tracer {
@@ -104,7 +108,8 @@ std::vector<Setting> Tracer::with_places(const Fit& fit) const {
   for (const PlaceEstimate& place : data_.places(model_, fit.evaluation, fit.covariance)) {
     // Those held out were pushed from there, too.
     const auto same = std::ranges::find_if(groups, [&](const std::vector<std::size_t>& group) {
-      return std::ranges::any_of(group, [&](std::size_t k) { return result_.series[k].name == place.series.front(); });
+      return std::ranges::any_of(
+          group, [&](std::size_t k) { return result_.series[k].name == place.series.front(); });
     });
     for (const std::size_t k : *same) {
       const Parameter& own = parameters().at(fmt::format("series[{}].{}", result_.series[k].name, place_key));
@@ -118,8 +123,19 @@ std::vector<Setting> Tracer::with_places(const Fit& fit) const {
   return settings;
 }
 
+// Every reading of every series has a point of its own here, of a million readings for minutes.
 ModelError Tracer::error_of(const Fit& fit, SharedPredictions& predictions) const {
-  predictions = all_.evaluate(with_places(fit)).predictions;
+  const Model::Applied applied = all_.apply(with_places(fit));
+  PredictionOptions whole;
+  whole.stop = options_.stop;
+  std::vector<Prediction> curves(applied.series.size());
+  base::parallel_for(curves.size(), [&](std::size_t k) {
+    curves[k] = predict(applied.series[k], all_.solver(), applied.reading[k], whole);
+  });
+  for (const Prediction& p : curves) {
+    if (p.curve.curve.report.termination == numerics::Termination::interrupted) throw Stopped{};
+  }
+  predictions = std::move(curves);
   return model_error(result_.series, result_.heldout, predictions, model_, fit);
 }
 
@@ -190,7 +206,8 @@ void Tracer::add_effects() {
   current_ = base_;
   tests_ = result_.base_tests;
   result_.few_readings = base_.dof() - 1.0 < fewest_dof(base_.free + 1);
-  if (has_finding(result_.findings, FindingKind::sign_turned)) return;  // effects of such readings mean nothing
+  if (has_finding(result_.findings, FindingKind::sign_turned))
+    return;  // effects of such readings mean nothing
   const double tolerance = result_.tolerance;
   while (static_cast<int>(added_.size()) < options_.most_effects) {
     // Where a size is asked for, what is smaller is not looked for.
@@ -198,9 +215,10 @@ void Tracer::add_effects() {
     const std::size_t number = result_.rounds.size() + 1;
     if (!progress_.go_on(fmt::format("round {}: scores of {} effects", number, catalogue().size()))) break;
     const double significance = number == 1 ? options_.significance : options_.further_significance;
-    RoundFits found = look_for_effect(
-        model_, data_, heldout_, {current_, tests_.left, begun_anew(), number == 1 && !tests_.acceptable(tolerance)},
-        number, {significance, tolerance}, progress_);
+    RoundFits found =
+        look_for_effect(model_, data_, heldout_,
+                        {current_, tests_.left, begun_anew(), number == 1 && !tests_.acceptable(tolerance)},
+                        number, {significance, tolerance}, progress_);
     result_.rounds.push_back(std::move(found.round));
     const Round& round = result_.rounds.back();
     for (std::size_t k = 0; k < found.rivals.size(); ++k) {
@@ -231,7 +249,8 @@ bool Tracer::needed(std::size_t which, double inflation, Fit& without) {
   without = added_.size() == 1 ? base_ : fit(model_, data_, start);
   if (!without.report.usable()) return true;
   double seen = 0.0;
-  for (const Candidate& c : result_.rounds.front().candidates) seen += c.score.unobservable.empty() ? 1.0 : 0.0;
+  for (const Candidate& c : result_.rounds.front().candidates)
+    seen += c.score.unobservable.empty() ? 1.0 : 0.0;
   const auto numbers = static_cast<double>(numbers_[which]);
   const double gain = (without.chi2 - current_.chi2) / numbers;
   const double below = inflation > 1.0 ? std::min(data_.noise.dof, tests_.left.directions) : data_.noise.dof;
@@ -312,16 +331,19 @@ void Tracer::conclude() {
   const double tolerance = result_.tolerance;
   // What may be more than the tolerance and has no name is not called missing unless it is more.
   const ResidualTests& base = result_.base_tests;
-  const bool small =
-      added_.empty() && !result_.few_readings && !base.of_published && tolerance > 0.0 && base.left.rmse <= tolerance;
+  const bool small = added_.empty() && !result_.few_readings && !base.of_published && tolerance > 0.0 &&
+                     base.left.rmse <= tolerance;
   const bool base_does = small || base.acceptable(tolerance);
   // One series of another wire is simpler than several causes of all.
   const bool several = added_.size() != 1 || !tests_.acceptable(tolerance);
   std::optional<Finding> odd;
-  if (!base_does && several && !base.of_published) odd = series_of_another_specimen(model_, data_, base_, progress_);
+  if (!base_does && several && !base.of_published)
+    odd = series_of_another_specimen(model_, data_, base_, progress_);
   result_.significant = !base_does || !added_.empty();
   Remaining& remaining = result_.remaining;
-  const auto leave = [&](const Remainder& left, double share) { remaining = {left.rmse, left.upper, share, ""}; };
+  const auto leave = [&](const Remainder& left, double share) {
+    remaining = {left.rmse, left.upper, share, ""};
+  };
   const Remainder& before = base.left;
   if (odd) {
     leave(before, 1.0);
@@ -363,7 +385,8 @@ void Tracer::conclude() {
   }
   result_.findings.insert(result_.findings.end(), beyond.begin(), beyond.end());
   find_findings();
-  const bool hides = !base.of_published && remaining.upper > std::max(tolerance, most_hidden * result_.peak_force);
+  const bool hides =
+      !base.of_published && remaining.upper > std::max(tolerance, most_hidden * result_.peak_force);
   if (result_.kind == VerdictKind::nothing_missing && (numbers_open() || hides))
     result_.kind = VerdictKind::cannot_tell;
   result_.explained = result_.kind == VerdictKind::nothing_missing || result_.kind == VerdictKind::explained;
@@ -406,7 +429,8 @@ void Tracer::reject() {
     result_.partial_rmse = fitted_rmse(data_, current_.evaluation);
   }
   const bool any = base_.dof() >= 1.0 && !result_.few_readings;
-  if (any && options_.attribute && progress_.go_on("where the residual comes from")) result_.functions = functions();
+  if (any && options_.attribute && progress_.go_on("where the residual comes from"))
+    result_.functions = functions();
   if (!result_.functions.empty() && !result_.one_condition)
     result_.channel = to_string(result_.functions.front().channel);
   progress_.clock("channels");
@@ -423,15 +447,16 @@ bool Tracer::decided() const {
                     .zero_in_doubt = result_.zero && result_.zero->doubtful,
                     .something_left = !tests_.agrees(result_.tolerance),
                     .numbers_open = numbers_open()};
-  evidence.readings_in_doubt =
-      has_finding(result_.findings, FindingKind::sign_turned) || has_finding(result_.findings, FindingKind::unit_slip);
+  evidence.readings_in_doubt = has_finding(result_.findings, FindingKind::sign_turned) ||
+                               has_finding(result_.findings, FindingKind::unit_slip);
   if (result_.selected.empty()) {
     return is_decided(evidence) && !result_.few_readings &&
            result_.remaining.upper <= std::max(result_.tolerance, most_force_left * result_.peak_force);
   }
   if (result_.one_condition) return false;
   evidence.left_out.push_back(left_out_rmse(model_, data_, base_));
-  for (const RoundFits& round : rounds_) evidence.left_out.push_back(left_out_rmse(model_, data_, round.better));
+  for (const RoundFits& round : rounds_)
+    evidence.left_out.push_back(left_out_rmse(model_, data_, round.better));
   return is_decided(evidence);
 }
 
@@ -518,8 +543,10 @@ void Tracer::average_intervals() {
     const Parameter& p = *final_.settings[k].parameter;
     FittedNumber& n = result_.final.numbers[k];
     n.averaged = true;
-    n.lower = interval->first >= model_.lower(p) ? std::optional(model_.shown({&p, interval->first})) : std::nullopt;
-    n.upper = interval->second <= model_.upper(p) ? std::optional(model_.shown({&p, interval->second})) : std::nullopt;
+    n.lower = interval->first >= model_.lower(p) ? std::optional(model_.shown({&p, interval->first}))
+                                                 : std::nullopt;
+    n.upper = interval->second <= model_.upper(p) ? std::optional(model_.shown({&p, interval->second}))
+                                                  : std::nullopt;
   }
 }
 
@@ -531,8 +558,9 @@ void Tracer::find_intervals() {
     const Parameter& p = *final_.settings[k].parameter;
     if (!final_.rank.is_known(k)) continue;
     if (!progress_.go_on("interval of " + p.key)) break;
-    const ProfileInterval interval = profile_interval(
-        model_, final_data_, final_, k, rise, [&](int, double) { return progress_.go_on("interval of " + p.key); });
+    const ProfileInterval interval = profile_interval(model_, final_data_, final_, k, rise, [&](int, double) {
+      return progress_.go_on("interval of " + p.key);
+    });
     if (progress_.interrupted()) break;
     FittedNumber& n = result_.final.numbers[k];
     n.profiled = true;
@@ -547,8 +575,9 @@ void Tracer::propose() {
   for (std::size_t k = 0; k < rounds_.size() && k < result_.selected.size(); ++k) {
     const RoundFits& r = rounds_[k];
     if (r.rivals.size() < 2) continue;
-    result_.next = next_experiment(model_, r.rivals[0].settings, r.rivals[1].settings,
-                                   {r.rival_names[0], r.rival_names[1]}, data_.noise.mean_sigma(model_.series()));
+    result_.next =
+        next_experiment(model_, r.rivals[0].settings, r.rivals[1].settings,
+                        {r.rival_names[0], r.rival_names[1]}, data_.noise.mean_sigma(model_.series()));
     return;
   }
 }
@@ -605,7 +634,14 @@ Trace Tracer::run() {
 }  // namespace
 
 Trace trace(const Experiment& experiment, const TraceOptions& options) {
-  return Tracer(experiment, options, Division(experiment)).run();
+  try {
+    return Tracer(experiment, options, Division(experiment)).run();
+  } catch (const Stopped&) {
+    Trace stopped;
+    stopped.interrupted = true;
+    stopped.report.end(numerics::Termination::interrupted, "interrupted");
+    return stopped;
+  }
 }
 
 }  // namespace snare::identification

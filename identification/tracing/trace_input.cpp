@@ -55,7 +55,8 @@ void check_readings(const std::filesystem::path& file, const std::vector<Series>
     }
     const double n = static_cast<double>(f.size());
     if (f.size() >= 8 && steps / variance > std::max(0.8, 2.0 - 6.0 / std::sqrt(n))) {
-      refuse("the forces do not follow the travel: the pusher never touched the wire, or the record is noise");
+      refuse(
+          "the forces do not follow the travel: the pusher never touched the wire, or the record is noise");
     }
   }
   if (!problems.empty()) throw base::InputError(problems);
@@ -64,7 +65,8 @@ void check_readings(const std::filesystem::path& file, const std::vector<Series>
 Division::Division(const Experiment& experiment) : all(experiment.series) {
   from_laws = replace_laws(all);
   const std::vector<std::string>& names = experiment.heldout;
-  for (const Series& s : all) is_heldout.push_back(std::find(names.begin(), names.end(), s.name) != names.end());
+  for (const Series& s : all)
+    is_heldout.push_back(std::find(names.begin(), names.end(), s.name) != names.end());
   check_readings(experiment.file, all, is_heldout);
   for (std::size_t k = 0; k < all.size(); ++k) (is_heldout[k] ? heldout : fitted).push_back(all[k]);
 }

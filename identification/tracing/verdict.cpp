@@ -26,7 +26,8 @@ double model_tolerance(const Experiment& experiment, const Data& data) {
   return data.noise.source == "declared" ? 0.0 : usual_tolerance * peak_force(data);
 }
 
-std::vector<Finding> beyond_construction(const Model& model, const std::vector<FittedNumber>& numbers, double factor) {
+std::vector<Finding> beyond_construction(const Model& model, const std::vector<FittedNumber>& numbers,
+                                         double factor) {
   constexpr double sure_beyond = 1.5;
   constexpr double rounding = 1e-9;
   const wire::WireSpecification& wire = model.series().front().test.wire;
@@ -40,12 +41,16 @@ std::vector<Finding> beyond_construction(const Model& model, const std::vector<F
     if (n.key.ends_with("wire.axial_stiffness_N")) limit = wire.youngs_modulus * area;
     if (n.key.ends_with("wire.bending_stiffness_Nm2")) limit = wire.youngs_modulus * area * square / 16.0;
     if (limit == 0.0 || !(n.lower.value_or(n.value) > (1.0 + rounding) * factor * limit)) continue;
-    Finding f{
-        .kind = FindingKind::impossible_stiffness, .key = n.key, .unit = n.unit, .value = n.value, .limit = limit};
+    Finding f{.kind = FindingKind::impossible_stiffness,
+              .key = n.key,
+              .unit = n.unit,
+              .value = n.value,
+              .limit = limit};
     f.sure = n.lower && *n.lower > sure_beyond * limit;
     f.what = fmt::format(
-        "{} = {:.4g} {} is {:.3g} times that of a solid section of the declared diameter and modulus{}", n.key, n.value,
-        n.unit, n.value / limit, f.sure ? ": no such wire has it, so the fit stands in for something else" : "");
+        "{} = {:.4g} {} is {:.3g} times that of a solid section of the declared diameter and modulus{}",
+        n.key, n.value, n.unit, n.value / limit,
+        f.sure ? ": no such wire has it, so the fit stands in for something else" : "");
     findings.push_back(std::move(f));
   }
   return findings;

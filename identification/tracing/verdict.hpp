@@ -44,7 +44,8 @@ inline constexpr double usual_tolerance = 0.01;
 /// EA and EI whose whole interval is beyond `factor` times those of a solid round section of the declared diameter and modulus.
 /// `sure` beyond 1.5 times: a diameter 6 % larger and a modulus 10 % higher give EI 1.4 times as large. Nothing where the modulus
 /// is not declared.
-[[nodiscard]] std::vector<Finding> beyond_construction(const Model& model, const std::vector<FittedNumber>& numbers,
+[[nodiscard]] std::vector<Finding> beyond_construction(const Model& model,
+                                                       const std::vector<FittedNumber>& numbers,
                                                        double factor = 1.0);
 
 /// Share of what `base` leaves beside the noise that `final` still leaves, as mean squares; in [0, 1].
@@ -68,8 +69,8 @@ struct Evidence {
   bool one_condition = false;                       ///< of readings
   bool zero_in_doubt = false;                       ///< of the travel
   bool something_left = false;                      ///< what the noise leaves once in twenty
-  bool numbers_open = false;                        ///< a null direction of the readings moves a fitted number
-  bool readings_in_doubt = false;                   ///< their sign or their unit
+  bool numbers_open = false;       ///< a null direction of the readings moves a fitted number
+  bool readings_in_doubt = false;  ///< their sign or their unit
   /// Errors of conditions left out [N]: of the base model, then with one selected effect after the other.
   std::vector<double> left_out{};
 };

@@ -52,8 +52,8 @@ std::optional<Eigen::VectorXd> column_beside(const Model& model, const Data& dat
 }  // namespace
 
 std::optional<ZeroCheck> check_zero(const Model& model, const Data& data, const Fit& fit_without) {
-  const bool read =
-      std::any_of(data.series.begin(), data.series.end(), [&](std::size_t k) { return !data.noise.summarised(k); });
+  const bool read = std::any_of(data.series.begin(), data.series.end(),
+                                [&](std::size_t k) { return !data.noise.summarised(k); });
   if (!read || has_zero(fit_without) || fit_without.dof() < 2.0) return std::nullopt;
   const Parameter& zero = parameters().at(zero_key);
   const std::optional<Eigen::VectorXd> asked_for = column_beside(model, data, fit_without, zero);

@@ -38,7 +38,8 @@ constexpr Range positive{0.0, 1e15, false};
 constexpr Range not_negative{0.0, 1e15, true};
 constexpr Range any_torque{-1e15, 1e15, true};
 
-constexpr Choice<Law> laws[] = {{"linear", Law::linear}, {"piecewise", Law::piecewise}, {"backlash", Law::backlash}};
+constexpr Choice<Law> laws[] = {
+    {"linear", Law::linear}, {"piecewise", Law::piecewise}, {"backlash", Law::backlash}};
 enum class BaseKind { fixed, free };
 constexpr Choice<BaseKind> base_kinds[] = {{"fixed", BaseKind::fixed}, {"free", BaseKind::free}};
 
@@ -94,10 +95,11 @@ int frame_of(const TomlTable& table, std::string_view key, const Tree& tree) {
 
 std::optional<DeflectionLaw> law_of(const TomlTable& table) {
   const auto law = table.choice("law", laws);
-  const auto rate = table.has("damping_on") ? table.choice("damping_on", damping_rates) : DampingRate::deflection;
+  const auto rate =
+      table.has("damping_on") ? table.choice("damping_on", damping_rates) : DampingRate::deflection;
   if (!law || !rate) {
-    know(table, {"from_deg", "stiffness_Nm_deg", "damping_Nms_deg", "reading", "jump_width_deg", "stiffness_Nm_rad",
-                 "damping_Nms_rad", "half_gap_deg"});
+    know(table, {"from_deg", "stiffness_Nm_deg", "damping_Nms_deg", "reading", "jump_width_deg",
+                 "stiffness_Nm_rad", "damping_Nms_rad", "half_gap_deg"});
     return std::nullopt;
   }
   std::vector<DeflectionPiece> pieces;
@@ -112,7 +114,8 @@ std::optional<DeflectionLaw> law_of(const TomlTable& table) {
     constexpr double usual_width = 4e-4 * degree;
     width = table.number_or("jump_width_deg", reading == StiffnessReading::literal ? usual_width : 0.0,
                             Range::from(0.0, 180.0), degree);
-    if (from.empty() || stiffness.empty() || damping.empty() || !reading || !(width >= 0.0)) return std::nullopt;
+    if (from.empty() || stiffness.empty() || damping.empty() || !reading || !(width >= 0.0))
+      return std::nullopt;
     if (stiffness.size() != from.size())
       table.fail("stiffness_Nm_deg", fmt::format("must have {} numbers, as from_deg has", from.size()));
     if (damping.size() != from.size())
@@ -133,7 +136,8 @@ std::optional<DeflectionLaw> law_of(const TomlTable& table) {
   } else {
     const double stiffness = table.number("stiffness_Nm_rad", positive);
     const double damping = table.number("damping_Nms_rad", not_negative);
-    const double gap = *law == Law::backlash ? table.number("half_gap_deg", Range::above(0.0, 180.0), degree) : 0.0;
+    const double gap =
+        *law == Law::backlash ? table.number("half_gap_deg", Range::above(0.0, 180.0), degree) : 0.0;
     if (!(stiffness > 0.0) || !(damping >= 0.0) || !(gap >= 0.0)) return std::nullopt;
     if (*law == Law::backlash) pieces.push_back({0.0, 0.0, 0.0, 0.0});
     pieces.push_back({gap, stiffness, damping, 0.0});
@@ -173,7 +177,8 @@ void change_links(const TomlTable& links, RobotDescription& robot) {
   for (RobotLink& link : robot.links) {
     const TomlTable own = links.table(link.name);
     for (const char* key : {"mass_kg", "com_mm", "inertia_kg_m2"}) {
-      if (own.has(key) && !(link.inertia.mass > 0.0)) own.fail(key, "only of a link that has a mass in the URDF");
+      if (own.has(key) && !(link.inertia.mass > 0.0))
+        own.fail(key, "only of a link that has a mass in the URDF");
     }
     if (!(link.inertia.mass > 0.0)) continue;
     const double was = link.inertia.mass;
@@ -199,12 +204,14 @@ void change_links(const TomlTable& links, RobotDescription& robot) {
 
 /// Cuts the links for which `[link.NAME]` has a bending compliance.
 std::vector<Flexure> bend_links(const TomlTable& links, RobotDescription& robot) {
-  constexpr double least_compliance = 1e-15, most_compliance = 1e3;  // [rad/(N m)], of a link that is not rigid
-  constexpr double usual_damping_time = 1e-3;                        // [s]
+  constexpr double least_compliance = 1e-15,
+                   most_compliance = 1e3;      // [rad/(N m)], of a link that is not rigid
+  constexpr double usual_damping_time = 1e-3;  // [s]
   std::vector<Flexure> flexures;
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
     const TomlTable own = links.table(robot.links[i].name);
-    const double compliance = own.number_or("bending_compliance_rad_Nm", 0.0, Range::from(0.0, most_compliance));
+    const double compliance =
+        own.number_or("bending_compliance_rad_Nm", 0.0, Range::from(0.0, most_compliance));
     const double time = own.number_or("bending_damping_time_s", usual_damping_time, Range::from(0.0, 10.0));
     if (compliance > 0.0 && compliance < least_compliance)
       own.fail("bending_compliance_rad_Nm",
@@ -296,8 +303,9 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
   const TomlTable common = root.table("every_joint");
   if (whole) {
     for (const RobotJoint& joint : robot->joints) {
-      const bool hinge = std::ranges::any_of(
-          flexures, [&](const Flexure& flexure) { return std::ranges::count(flexure.hinges, joint.name) > 0; });
+      const bool hinge = std::ranges::any_of(flexures, [&](const Flexure& flexure) {
+        return std::ranges::count(flexure.hinges, joint.name) > 0;
+      });
       if (!joint.kind || *joint.kind == JointKind::free || hinge) continue;
       const TomlTable own = joints.table(joint.name).over(common);
       ElasticJoint elastic;
@@ -329,7 +337,8 @@ ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
     }
   }
   const std::size_t count = description.joints.size();
-  if (whole && count == 0) root.fail("urdf", "must have at least one revolute, continuous or prismatic joint");
+  if (whole && count == 0)
+    root.fail("urdf", "must have at least one revolute, continuous or prismatic joint");
   for (const TomlTable& pose : root.tables("pose")) {
     ArmPose one;
     one.name = pose.text("name");

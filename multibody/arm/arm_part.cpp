@@ -67,7 +67,8 @@ void ElasticArmPart::declare(numerics::DaeLayout& layout) {
   const int m = arm_.motors();
   const ArmTolerances& t = tolerances_;
   constexpr auto kind = numerics::DaeKind::differential;
-  q_ = layout.add({"arm coordinate", {}, arm_.tree.coordinates(), kind, t.coordinate, 0, t.relative_coordinates});
+  q_ = layout.add(
+      {"arm coordinate", {}, arm_.tree.coordinates(), kind, t.coordinate, 0, t.relative_coordinates});
   v_ = layout.add({"arm velocity", {}, arm_.tree.velocities(), kind, t.rate});
   motor_ = layout.add({"motor angle [rad]", {}, m, kind, t.coordinate, 0, t.relative_coordinates});
   rate_ = layout.add({"motor rate [rad/s]", {}, m, kind, t.rate});
@@ -94,7 +95,8 @@ void ElasticArmPart::for_each_entry(const Keep& keep) const {
     for (int i = 0; i < tree.velocities(); ++i) keep(&Slots::motion_by_v, v_ + i, v_ + j);
   }
   for (const int row : {drive_work(), load_work(), lost()}) keep(&Slots::work, row, row);
-  for (int j = 0; !loads_.empty() && j < tree.coordinates(); ++j) keep(&Slots::work_by_q, load_work(), q_ + j);
+  for (int j = 0; !loads_.empty() && j < tree.coordinates(); ++j)
+    keep(&Slots::work_by_q, load_work(), q_ + j);
   for (int j = 0; !loads_.empty() && j < tree.velocities(); ++j) keep(&Slots::work_by_v, load_work(), v_ + j);
   if (base_ != BaseEquations::momentum) return;
   for (int i = 0; i < 6; ++i) {
@@ -136,7 +138,8 @@ void ElasticArmPart::attach_pattern(const numerics::SparseMatrix& pattern) {
 
 double ElasticArmPart::inside(double time) const {
   const double margin = 1e-12 * (1.0 + std::abs(time));  // far below every time that matters
-  return std::clamp(time, interval_begin_ + margin, std::max(interval_begin_ + margin, interval_end_ - margin));
+  return std::clamp(time, interval_begin_ + margin,
+                    std::max(interval_begin_ + margin, interval_end_ - margin));
 }
 
 JointFriction ElasticArmPart::friction(int joint) const {
@@ -251,7 +254,8 @@ void ElasticArmPart::residual(const numerics::DaePoint& point, Eigen::Ref<Eigen:
     }
   }
   // Inertia less forces of the tree, or the momentum of its base.
-  rows.segment(v_, tree.velocities()) += inverse_dynamics(tree, q_values_, v_values_, a_values_, wrenches_, workspace_);
+  rows.segment(v_, tree.velocities()) +=
+      inverse_dynamics(tree, q_values_, v_values_, a_values_, wrenches_, workspace_);
   rows.segment(work_, 3) += point.rate.segment(work_, 3);
   if (base_ == BaseEquations::momentum) use_momentum(point, loaded, rows);
 
@@ -318,7 +322,8 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
   }
   for (int j = 0; j < nv; ++j) {
     for (int i = 0; i < nv; ++i) {
-      values[at(slots_.motion_by_v[at(j * nv + i)])] += derivatives_.velocity(i, j) + c * derivatives_.mass(i, j);
+      values[at(slots_.motion_by_v[at(j * nv + i)])] +=
+          derivatives_.velocity(i, j) + c * derivatives_.mass(i, j);
     }
   }
 
@@ -348,7 +353,8 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
     add(s.drive_work.angle, -t.drive_by_angle * t.motor_rate);
     add(s.drive_work.rate, -t.drive_by_rate * t.motor_rate - t.drive);
     add(s.lost.v, -2.0 * t.gear_damping * t.deflection_rate);
-    add(s.lost.rate, 2.0 * t.gear_damping * t.deflection_rate - t.motor_loss_slope * t.motor_rate - t.motor_loss);
+    add(s.lost.rate,
+        2.0 * t.gear_damping * t.deflection_rate - t.motor_loss_slope * t.motor_rate - t.motor_loss);
     const double loss_by_deflection =
         t.gear_damping_slope * t.deflection_rate * t.deflection_rate + t.loss_by_deflection * t.motor_rate;
     add(s.lost.q, -loss_by_deflection);

@@ -110,7 +110,8 @@ class ElasticArmPart : public numerics::DaePart {
   /// y' that belongs to y in the present modes, by forward dynamics.
   void write_rate(double time, numerics::VectorView y, Eigen::Ref<Eigen::VectorXd> rate);
   /// The rates that annul the rows of a residual at vanishing y' (of this part and of all that add to its rows).
-  void solve_rates(double time, numerics::VectorView y, numerics::VectorView rows, Eigen::Ref<Eigen::VectorXd> rate);
+  void solve_rates(double time, numerics::VectorView y, numerics::VectorView rows,
+                   Eigen::Ref<Eigen::VectorXd> rate);
   /// Torque of a joint's spring with its damper on the motor [N m].
   [[nodiscard]] double joint_torque(numerics::VectorView y, int joint) const;
   /// Torque of a drive [N m].
@@ -135,7 +136,9 @@ class ElasticArmPart : public numerics::DaePart {
 
   static constexpr int events_per_joint = 6;  ///< kinds of JointEvent
   [[nodiscard]] static int joint_of_event(int event) { return event / events_per_joint; }
-  [[nodiscard]] static JointEvent kind_of_event(int event) { return static_cast<JointEvent>(event % events_per_joint); }
+  [[nodiscard]] static JointEvent kind_of_event(int event) {
+    return static_cast<JointEvent>(event % events_per_joint);
+  }
 
  private:
   /// Slots of the entries that a joint's torques add, by rows; columns: its coordinate and velocity, the motor's angle
@@ -148,7 +151,8 @@ class ElasticArmPart : public numerics::DaePart {
   };
   /// Slots of all else, by what they hold.
   struct Slots {
-    std::vector<int> coordinate, motion_by_q, motion_by_v, work, work_by_q, work_by_v, momentum, momentum_by_q;
+    std::vector<int> coordinate, motion_by_q, motion_by_v, work, work_by_q, work_by_v, momentum,
+        momentum_by_q;
   };
   struct Terms;
   /// keep(group of Slots, row, column) for every entry that belongs to no joint.

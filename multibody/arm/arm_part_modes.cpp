@@ -25,7 +25,8 @@ double ElasticArmPart::joint_torque(numerics::VectorView y, int joint) const {
   const int branch = modes_[at(joint)].branch;
   const double d = y[q_ + body.q_index] - y[motor_ + joint];
   const double rate = y[v_ + body.v_index] - y[rate_ + joint];
-  const double damping = j.spring.damping_rate() == DampingRate::deflection ? j.spring.damping(branch, d) : 0.0;
+  const double damping =
+      j.spring.damping_rate() == DampingRate::deflection ? j.spring.damping(branch, d) : 0.0;
   return j.spring.torque(branch, d) + damping * rate;
 }
 
@@ -57,7 +58,8 @@ void ElasticArmPart::events(const numerics::DaePoint& point, std::span<double> v
       }
     }
     if (drive.mode == DriveMode::servo && std::isfinite(drive.limit)) {
-      const double demand = drive.demand(inside(point.time), point.y[motor_ + k], point.y[rate_ + k]) / drive.limit;
+      const double demand =
+          drive.demand(inside(point.time), point.y[motor_ + k], point.y[rate_ + k]) / drive.limit;
       if (mode.saturated == 0) {
         g(JointEvent::limit_upper_or_leave) = 1.0 - demand;
         g(JointEvent::limit_lower) = 1.0 + demand;
@@ -86,7 +88,8 @@ void ElasticArmPart::save_state(std::vector<double>& memory) const {
 
 void ElasticArmPart::restore_state(const numerics::VectorView& /*y*/, std::span<const double>& memory) {
   for (JointMode& mode : modes_) {
-    for (int* value : {&mode.branch, &mode.turning, &mode.saturated}) *value = static_cast<int>(numerics::take(memory));
+    for (int* value : {&mode.branch, &mode.turning, &mode.saturated})
+      *value = static_cast<int>(numerics::take(memory));
   }
 }
 
@@ -110,7 +113,8 @@ void ElasticArmPart::settle(double time, numerics::VectorView y) {
   }
 }
 
-void ElasticArmPart::leave_modes(double time, Eigen::Ref<Eigen::VectorXd> y, const std::vector<int>& ended_modes) {
+void ElasticArmPart::leave_modes(double time, Eigen::Ref<Eigen::VectorXd> y,
+                                 const std::vector<int>& ended_modes) {
   for (const int event : ended_modes) {
     const int k = joint_of_event(event);
     JointMode& mode = modes_[at(k)];
@@ -198,14 +202,16 @@ void ElasticArmPart::write_rate(double time, numerics::VectorView y, Eigen::Ref<
   }
 
   Eigen::VectorXd torque = Eigen::VectorXd::Zero(nv);
-  for (int k = 0; k < arm_.motors(); ++k) torque[tree.body(arm_.joints[at(k)].body).v_index] = -joint_torque(y, k);
-  rate.segment(v_, nv) =
-      forward_dynamics(tree, y.segment(q_, tree.coordinates()), y.segment(v_, nv), torque, wrenches_, workspace_);
+  for (int k = 0; k < arm_.motors(); ++k)
+    torque[tree.body(arm_.joints[at(k)].body).v_index] = -joint_torque(y, k);
+  rate.segment(v_, nv) = forward_dynamics(tree, y.segment(q_, tree.coordinates()), y.segment(v_, nv), torque,
+                                          wrenches_, workspace_);
 }
 
 void ElasticArmPart::solve_rates(double time, numerics::VectorView y, numerics::VectorView rows,
                                  Eigen::Ref<Eigen::VectorXd> rate) {
-  assert(base_ == BaseEquations::newton_euler && "with the momentum as an unknown nothing else acts on the arm");
+  assert(base_ == BaseEquations::newton_euler &&
+         "with the momentum as an unknown nothing else acts on the arm");
   const Tree& tree = arm_.tree;
   const auto annul = [&](int first, int count) { rate.segment(first, count) = -rows.segment(first, count); };
   annul(q_, tree.coordinates());

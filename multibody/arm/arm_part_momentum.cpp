@@ -14,10 +14,12 @@ using base::at;
 
 }  // namespace
 
-void ElasticArmPart::use_momentum(const numerics::DaePoint& point, bool loaded, Eigen::Ref<Eigen::VectorXd> rows) {
+void ElasticArmPart::use_momentum(const numerics::DaePoint& point, bool loaded,
+                                  Eigen::Ref<Eigen::VectorXd> rows) {
   // Bodies' velocities and poses are those that the inverse dynamics have just left; F_B is free now.
   std::vector<Wrench>& carried = workspace_.F_B;
-  for (int i = 0; i < arm_.tree.size(); ++i) carried[at(i)] = arm_.tree.body(i).inertia * workspace_.V_B[at(i)];
+  for (int i = 0; i < arm_.tree.size(); ++i)
+    carried[at(i)] = arm_.tree.body(i).inertia * workspace_.V_B[at(i)];
   for (int i = arm_.tree.size() - 1; i > 0; --i) {
     carried[at(arm_.tree.body(i).parent)] += workspace_.X_PB[at(i)].to_outer(carried[at(i)]);
   }
@@ -47,7 +49,8 @@ void ElasticArmPart::add_momentum_derivatives(double time, double c, std::vector
     Eigen::Matrix<double, 3, Eigen::Dynamic> by_motion(3, arm_.tree.velocities());
     for (int j = 0; j < arm_.tree.velocities(); ++j)
       by_motion.col(j) = share * J.col(j).tail<3>().cross(load.peak.force);
-    const Eigen::Matrix<double, 3, Eigen::Dynamic> by_coordinates = by_motion * coordinate_motion(arm_.tree, q_values_);
+    const Eigen::Matrix<double, 3, Eigen::Dynamic> by_coordinates =
+        by_motion * coordinate_motion(arm_.tree, q_values_);
     for (int j = 0; j < arm_.tree.coordinates(); ++j) {
       for (int i = 0; i < 3; ++i) values[at(slots_.momentum_by_q[at(3 * j + i)])] -= by_coordinates(i, j);
     }

@@ -150,7 +150,8 @@ class Run {
     const double start = history_.samples.front().energy;
     double scale = 0.0, error = 0.0;
     for (const ArmSample& s : history_.samples) {
-      scale = std::max({scale, std::abs(s.energy), std::abs(s.work.motors), std::abs(s.work.loads), s.work.lost});
+      scale =
+          std::max({scale, std::abs(s.energy), std::abs(s.work.motors), std::abs(s.work.loads), s.work.lost});
       error = std::max(error, std::abs(s.energy - start - s.work.motors - s.work.loads + s.work.lost));
     }
     history_.energy_error = scale > 0.0 ? error / scale : 0.0;
@@ -173,7 +174,8 @@ class Run {
 ArmHistory simulate(const ArmScenario& scenario) {
   const int m = scenario.arm.motors();
   const auto fits = [m](const std::vector<Drive>& drives) { return static_cast<int>(drives.size()) == m; };
-  bool fit = fits(scenario.drives) && scenario.initial.motor.size() == m && scenario.initial.motor_rate.size() == m &&
+  bool fit = fits(scenario.drives) && scenario.initial.motor.size() == m &&
+             scenario.initial.motor_rate.size() == m &&
              scenario.initial.q.size() == scenario.arm.tree.coordinates() &&
              scenario.initial.v.size() == scenario.arm.tree.velocities();
   for (const DriveSwitch& change : scenario.switches) fit = fit && fits(change.drives) && change.joint < m;

@@ -21,7 +21,7 @@ struct ArmScenario {
   double sample = 0.01;           ///< interval of the history [s], > 0
   numerics::IdaOptions ida;
   ArmTolerances tolerances;
-  double least_advance = 0.0;            ///< what a window of work must bring [s], >= 0; 0: nothing.   theory.md (M.30)
+  double least_advance = 0.0;  ///< what a window of work must bring [s], >= 0; 0: nothing.   theory.md (M.30)
   std::function<void(double)> progress;  ///< told every sample's time [s]
   std::function<bool()> stop;            ///< asked after every step; true: stop here
 };

@@ -15,7 +15,8 @@ struct Share {
 
 Share quintic(double s) {
   const double rest = 1.0 - s;
-  return {s * s * s * (10.0 + s * (-15.0 + 6.0 * s)), 30.0 * s * s * rest * rest, 60.0 * s * rest * (rest - s)};
+  return {s * s * s * (10.0 + s * (-15.0 + 6.0 * s)), 30.0 * s * s * rest * rest,
+          60.0 * s * rest * (rest - s)};
 }
 
 // Rate u in the middle, u s/r on the ramps: the area of the trapezoid is u (1 - r) = 1.
@@ -91,7 +92,8 @@ double Course::next_break(double time) const {
   consider(begin);
   consider(begin + duration);
   const std::vector<double>& knots = smooth ? stops : table->knots();
-  const auto behind = std::partition_point(knots.begin(), knots.end(), [&](double k) { return begin + k <= time; });
+  const auto behind =
+      std::partition_point(knots.begin(), knots.end(), [&](double k) { return begin + k <= time; });
   if (behind != knots.end()) consider(begin + *behind);
   return next;
 }
@@ -115,8 +117,8 @@ std::vector<double> less_the_first(std::vector<double> values) {
 }
 
 /// Through values that begin at zero, at rest at both ends.
-Course table_course(double from, double begin, const std::vector<double>& times, const std::vector<double>& rise,
-                    std::vector<double> slopes) {
+Course table_course(double from, double begin, const std::vector<double>& times,
+                    const std::vector<double>& rise, std::vector<double> slopes) {
   slopes.front() = slopes.back() = 0.0;
   Course course(from, from + rise.back(), begin, times.back());
   course.kind = CourseKind::table;
@@ -126,7 +128,8 @@ Course table_course(double from, double begin, const std::vector<double>& times,
 
 }  // namespace
 
-Course Course::through(double from, double begin, const std::vector<double>& times, const std::vector<double>& values) {
+Course Course::through(double from, double begin, const std::vector<double>& times,
+                       const std::vector<double>& values) {
   const std::vector<double> rise = less_the_first(values);
   return table_course(from, begin, times, rise,
                       numerics::monotone_slopes(times, rise, numerics::HermiteCurve(times, rise).slopes()));

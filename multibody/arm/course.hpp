@@ -10,13 +10,14 @@ namespace snare::multibody {
 /// How a motor gets from one angle to another.                                                    theory.md (A.12)
 enum class CourseKind {
   quintic,  ///< r = from + (to - from) (10 s^3 - 15 s^4 + 6 s^5), s = (t - begin)/duration: at rest at both ends
-  ramped,   ///< a constant rate, reached and left within `ramp` with a constant acceleration
-  table     ///< r = from + the value of `table` at t - begin, from its first knot to its last
+  ramped,  ///< a constant rate, reached and left within `ramp` with a constant acceleration
+  table    ///< r = from + the value of `table` at t - begin, from its first knot to its last
 };
 
 /// Of a line through values (of any unit) the times [s] at which it leaves a level stretch: an integration that stops there cannot step over
 /// what follows.
-[[nodiscard]] std::vector<double> ends_of_rest(const std::vector<double>& times, const std::vector<double>& values);
+[[nodiscard]] std::vector<double> ends_of_rest(const std::vector<double>& times,
+                                               const std::vector<double>& values);
 
 /// Where a motor is told to be: rate continuous, at rest before and after.
 struct Course {

@@ -19,10 +19,11 @@ double sign(int branch) {
 
 }  // namespace
 
-DeflectionLaw::DeflectionLaw(std::vector<DeflectionPiece> pieces, StiffnessReading reading, DampingRate damping_rate,
-                             double jump_width)
+DeflectionLaw::DeflectionLaw(std::vector<DeflectionPiece> pieces, StiffnessReading reading,
+                             DampingRate damping_rate, double jump_width)
     : pieces_(std::move(pieces)), damping_rate_(damping_rate) {
-  if (pieces_.empty() || pieces_.front().from != 0.0) throw std::invalid_argument("the first piece must begin at 0");
+  if (pieces_.empty() || pieces_.front().from != 0.0)
+    throw std::invalid_argument("the first piece must begin at 0");
   double torque = 0.0;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const DeflectionPiece& now = pieces_[i];
@@ -58,16 +59,18 @@ void DeflectionLaw::add_ramps(double width) {
   for (std::size_t i = 1; i < given.size(); ++i) {
     const DeflectionPiece& now = given[i];
     const DeflectionPiece& before = given[i - 1];
-    if (!(width < now.from - before.from)) throw std::invalid_argument("the jumps must be narrower than the pieces");
+    if (!(width < now.from - before.from))
+      throw std::invalid_argument("the jumps must be narrower than the pieces");
     const double reached = torque[i - 1] + before.stiffness * (now.from - before.from);
     if (reached == torque[i] && before.damping == now.damping) {
       pieces_.push_back(now);
       torque_from_.push_back(torque[i]);
       continue;
     }
-    const double low = reached - 0.5 * before.stiffness * width, high = torque[i] + 0.5 * now.stiffness * width;
-    pieces_.push_back(
-        {now.from - 0.5 * width, (high - low) / width, before.damping, (now.damping - before.damping) / width});
+    const double low = reached - 0.5 * before.stiffness * width,
+                 high = torque[i] + 0.5 * now.stiffness * width;
+    pieces_.push_back({now.from - 0.5 * width, (high - low) / width, before.damping,
+                       (now.damping - before.damping) / width});
     torque_from_.push_back(low);
     pieces_.push_back({now.from + 0.5 * width, now.stiffness, now.damping, 0.0});
     torque_from_.push_back(high);
@@ -94,7 +97,8 @@ bool DeflectionLaw::outermost(int branch) const {
 
 double DeflectionLaw::lower_end(int branch) const {
   if (branch > 0) return piece(branch).from;
-  return outermost(branch) ? -std::numeric_limits<double>::infinity() : -pieces_[at(std::abs(branch) + 1)].from;
+  return outermost(branch) ? -std::numeric_limits<double>::infinity()
+                           : -pieces_[at(std::abs(branch) + 1)].from;
 }
 
 double DeflectionLaw::upper_end(int branch) const {
@@ -103,7 +107,8 @@ double DeflectionLaw::upper_end(int branch) const {
 
 double DeflectionLaw::torque(int branch, double deflection) const {
   const DeflectionPiece& p = piece(branch);
-  return sign(branch) * torque_from_[at(std::abs(branch))] + p.stiffness * (deflection - sign(branch) * p.from);
+  return sign(branch) * torque_from_[at(std::abs(branch))] +
+         p.stiffness * (deflection - sign(branch) * p.from);
 }
 
 double DeflectionLaw::stiffness(int branch) const {

@@ -37,7 +37,8 @@ class DeflectionLaw {
  public:
   /// At least one piece, from 0 on, increasing. jump_width [rad], >= 0 and less than any piece; 0: jumps stay jumps.
   /// Throws std::invalid_argument.
-  explicit DeflectionLaw(std::vector<DeflectionPiece> pieces, StiffnessReading reading = StiffnessReading::continuous,
+  explicit DeflectionLaw(std::vector<DeflectionPiece> pieces,
+                         StiffnessReading reading = StiffnessReading::continuous,
                          DampingRate damping_rate = DampingRate::deflection, double jump_width = 0.0);
   /// One piece: stiffness [N m/rad], >= 0; damping [N m s/rad], >= 0.
   [[nodiscard]] static DeflectionLaw linear(double stiffness, double damping);

@@ -24,7 +24,7 @@ struct Drive {
   double proportional = 0.0;                               ///< kp [N m/rad], >= 0
   double derivative = 0.0;                                 ///< kd [N m s/rad], >= 0
   double limit = std::numeric_limits<double>::infinity();  ///< [N m], > 0
-  double rate_share = 1.0;                                 ///< s: of the course's rate that kd sees [-], 0 to 1
+  double rate_share = 1.0;  ///< s: of the course's rate that kd sees [-], 0 to 1
   Course course;
   /// Of a torque: straight between values at times from 0 on [s, N m], and the last one held. At least one.
   struct Torque {

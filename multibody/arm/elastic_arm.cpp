@@ -46,8 +46,8 @@ double total_energy(const ElasticArm& arm, const ArmState& state) {
   return energy;
 }
 
-std::vector<ArmMode> natural_modes(const ElasticArm& arm, const Eigen::VectorXd& q, const std::vector<Drive>& drives,
-                                   const Eigen::VectorXd& deflections) {
+std::vector<ArmMode> natural_modes(const ElasticArm& arm, const Eigen::VectorXd& q,
+                                   const std::vector<Drive>& drives, const Eigen::VectorXd& deflections) {
   assert(static_cast<int>(drives.size()) == arm.motors());
   const int n = arm.tree.velocities(), m = arm.motors();
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n + m, n + m), K = M;
@@ -61,7 +61,8 @@ std::vector<ArmMode> natural_modes(const ElasticArm& arm, const Eigen::VectorXd&
     const double d = deflections.size() == 0 ? 0.0 : deflections[k];
     const double stiffness = joint.spring.stiffness(joint.spring.branch_of(d));
     K(i, i) += stiffness;
-    K(n + k, n + k) += stiffness + (drives[at(k)].mode == DriveMode::servo ? drives[at(k)].proportional : 0.0);
+    K(n + k, n + k) +=
+        stiffness + (drives[at(k)].mode == DriveMode::servo ? drives[at(k)].proportional : 0.0);
     K(i, n + k) -= stiffness;
     K(n + k, i) -= stiffness;
     M(n + k, n + k) = joint.motor_inertia;

@@ -16,8 +16,9 @@ namespace snare::multibody {
 /// A motor that turns a joint through an elastic gear; all of it on the output side.           theory.md (A.9)
 struct ElasticJoint {
   std::string name;
-  std::string link{};  ///< that it moves; of one that bends it carries a part, which has another name in the tree
-  int body = 0;        ///< of the tree, on a revolute or prismatic joint
+  std::string
+      link{};    ///< that it moves; of one that bends it carries a part, which has another name in the tree
+  int body = 0;  ///< of the tree, on a revolute or prismatic joint
   double motor_inertia = 0.0;  ///< B = (gear ratio)^2 times that of the rotor [kg m^2], > 0
   DeflectionLaw spring = DeflectionLaw::linear(0.0, 0.0);
   JointFriction friction;

@@ -52,8 +52,9 @@ Flexure bend_link(RobotDescription& robot, std::size_t link, double stiffness, d
     joint.axis = axis;
     return joint;
   };
-  robot.joints.insert(robot.joints.begin() + at, {hinge(flexure.hinges[0], root, between, first),
-                                                  hinge(flexure.hinges[1], between, name, along.cross(first))});
+  robot.joints.insert(robot.joints.begin() + at,
+                      {hinge(flexure.hinges[0], root, between, first),
+                       hinge(flexure.hinges[1], between, name, along.cross(first))});
   robot.links.insert(robot.links.begin() + at,
                      {RobotLink{root, share_of(whole, inboard_share)}, RobotLink{between, {}}});
   return flexure;

@@ -12,8 +12,9 @@ double JointFriction::torque(int direction, double velocity) const {
 
 double JointFriction::slope(int direction, double velocity) const {
   const double ratio = velocity / stribeck_velocity;
-  return -direction * (breakaway - coulomb) * std::exp(-ratio * ratio) * 2.0 * ratio / stribeck_velocity + viscous +
-         (velocity < 0.0 ? -viscous_asymmetry : viscous_asymmetry) + 2.0 * quadratic * std::abs(velocity);
+  return -direction * (breakaway - coulomb) * std::exp(-ratio * ratio) * 2.0 * ratio / stribeck_velocity +
+         viscous + (velocity < 0.0 ? -viscous_asymmetry : viscous_asymmetry) +
+         2.0 * quadratic * std::abs(velocity);
 }
 
 int JointFriction::leaves(double applied) const {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import operator
 import os
@@ -52,7 +53,10 @@ def _pairs(given: Optional[Mapping[str, Any]]) -> List[Tuple[str, str]]:
 
 
 def _print(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)
+    """Prints progress. If standard error is closed or full, the text is lost and the work continues."""
+    if sys.stderr is not None:
+        with contextlib.suppress(OSError, ValueError):
+            print(text, file=sys.stderr, flush=True)
 
 
 def _watcher(progress: Progress) -> Optional[Callable[[str], Any]]:
@@ -196,7 +200,7 @@ def sweep(study: File, *, set: Optional[Mapping[str, Any]] = None, threads: int 
 
     study: sweep file (docs/sweep_file.md); set: keys of it to override. out: a folder for the journal of finished cases, from
     which the same call goes on after an interrupt or a crash; without one they are lost then. A sweep with ``[histories]`` must have
-    one. The other arguments as of ``push``.
+    one. The folder is held while the sweep runs; a folder that another run holds is rejected. The other arguments as of ``push``.
 
     Returns summary.json (docs/sweep_file.md) with ``table``: columns of one length, a row a finished case: ``case`` (from 1),
     ``status``, ``reason``, the variables and the collected fields, in the units of the files; and ``histories``, the path of

@@ -15,7 +15,8 @@ class MpiRanks : public Ranks {
   MpiRanks() {
     int provided = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
-    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);  // one rank that is gone is not the end of all
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD,
+                            MPI_ERRORS_RETURN);  // one rank that is gone is not the end of all
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
   }
@@ -26,7 +27,8 @@ class MpiRanks : public Ranks {
   void send(int to, const std::string& bytes) override {
     sent_.push_back({bytes, MPI_REQUEST_NULL});
     Sent& one = sent_.back();
-    MPI_Isend(one.bytes.data(), static_cast<int>(one.bytes.size()), MPI_CHAR, to, tag, MPI_COMM_WORLD, &one.request);
+    MPI_Isend(one.bytes.data(), static_cast<int>(one.bytes.size()), MPI_CHAR, to, tag, MPI_COMM_WORLD,
+              &one.request);
     forget_sent();
   }
 
@@ -39,7 +41,8 @@ class MpiRanks : public Ranks {
     int size = 0;
     MPI_Get_count(&status, MPI_CHAR, &size);
     Message message{status.MPI_SOURCE, std::string(static_cast<std::size_t>(size), '\0')};
-    if (MPI_Recv(message.bytes.data(), size, MPI_CHAR, status.MPI_SOURCE, tag, MPI_COMM_WORLD, &status) != MPI_SUCCESS)
+    if (MPI_Recv(message.bytes.data(), size, MPI_CHAR, status.MPI_SOURCE, tag, MPI_COMM_WORLD, &status) !=
+        MPI_SUCCESS)
       return std::nullopt;
     return message;
   }

@@ -69,14 +69,16 @@ TEST_F(BenchmarkCommand, ScoresModelsAndTheirHistoryOnAnArchivedOne) {
     theirs += std::to_string(1.1 * std::stod(row.substr(comma + 1))) + ",7," + row.substr(0, comma) + "\n";
   }
   write("theirs.csv", theirs);
-  ASSERT_EQ(run("benchmark benchmark.toml --case push --against theirs.csv --out a"), 0) << contents("err.txt");
+  ASSERT_EQ(run("benchmark benchmark.toml --case push --against theirs.csv --out a"), 0)
+      << contents("err.txt");
   const nlohmann::json their = model("a", 0), coarse = model("a", 1), heavy = model("a", 2);
   EXPECT_EQ(their["model"], "theirs.csv");
   EXPECT_NEAR(their["scores"]["force_N"]["peak"].get<double>(), 0.1, 1e-4);
   EXPECT_NEAR(their["scores"]["force_N"]["rms"].get<double>(), 0.1, 0.01);
   EXPECT_LT(std::abs(coarse["scores"]["force_N"]["peak"].get<double>()), 0.1);
   EXPECT_GT(std::abs(coarse["scores"]["force_N"]["peak"].get<double>()), 1e-6);
-  EXPECT_LT(heavy["scores"]["force_N"]["peak"].get<double>(), -0.05);  // a softer wire than steel of this diameter
+  EXPECT_LT(heavy["scores"]["force_N"]["peak"].get<double>(),
+            -0.05);  // a softer wire than steel of this diameter
   EXPECT_EQ(coarse["outcome"]["touching"]["same"], true);
   const nlohmann::json answer = parsed("a/benchmark.json");
   EXPECT_EQ(answer["interrupted"], false);
@@ -90,13 +92,15 @@ TEST_F(BenchmarkCommand, ScoresModelsAndTheirHistoryOnAnArchivedOne) {
 // A file that the archive was not made with is said to be another one; a damaged archive is not used.
 TEST_F(BenchmarkCommand, KnowsItsArchive) {
   EXPECT_EQ(run("benchmark benchmark.toml --out a"), 2);
-  EXPECT_THAT(contents("err.txt"), HasSubstr("references/push.csv: is missing: snare benchmark --archive makes it"));
+  EXPECT_THAT(contents("err.txt"),
+              HasSubstr("references/push.csv: is missing: snare benchmark --archive makes it"));
   ASSERT_EQ(run("benchmark benchmark.toml --archive"), 0);
   const std::string made = contents("references/push.json");
   ASSERT_EQ(run("benchmark benchmark.toml --archive"), 0);
   write("push.toml", contents("push.toml") + "[solver]\nextrapolate = false\n");
   ASSERT_EQ(run("benchmark benchmark.toml --out a"), 0) << contents("err.txt");
-  EXPECT_THAT(contents("err.txt"), HasSubstr("warning: push: the archived history was made from other input"));
+  EXPECT_THAT(contents("err.txt"),
+              HasSubstr("warning: push: the archived history was made from other input"));
   EXPECT_EQ(parsed("a/benchmark.json")["cases"][0]["stale"], true);
   write("references/push.json", made.substr(0, made.size() / 2));
   EXPECT_EQ(run("benchmark benchmark.toml --out a"), 2);
@@ -112,15 +116,19 @@ TEST_F(BenchmarkCommand, WrongFilesAreToldBeforeAnythingRuns) {
     EXPECT_EQ(run("benchmark wrong.toml --archive"), 2) << is;
     return contents("err.txt");
   };
-  EXPECT_THAT(complaint("force_N = \"force_N\"", "force_N = \"force_n\""), HasSubstr("did you mean force_N?"));
+  EXPECT_THAT(complaint("force_N = \"force_N\"", "force_N = \"force_n\""),
+              HasSubstr("did you mean force_N?"));
   EXPECT_THAT(complaint("\"solver.elements\" = 16", "\"solver.elemets\" = 16"),
               HasSubstr("wrong.toml, push, coarse: solver.elemets"));
   EXPECT_THAT(complaint("file = \"push.toml\"", "file = \"none.toml\""), HasSubstr("none.toml"));
-  EXPECT_THAT(complaint("name = \"heavy\"", "name = \"coarse\""), HasSubstr("must not be that of another one"));
-  EXPECT_THAT(complaint("name = \"push\"", "name = \"../push\""), HasSubstr("must be of letters, digits and _"));
+  EXPECT_THAT(complaint("name = \"heavy\"", "name = \"coarse\""),
+              HasSubstr("must not be that of another one"));
+  EXPECT_THAT(complaint("name = \"push\"", "name = \"../push\""),
+              HasSubstr("must be of letters, digits and _"));
   EXPECT_THAT(complaint("[[cases.refinements]]\nset = { \"solver.elements\" = 32 }\n", ""),
               HasSubstr("must be two or more, coarse to fine"));
-  EXPECT_THAT(complaint("series[middle].in", "series[middle..in"), HasSubstr("must be a field of the result"));
+  EXPECT_THAT(complaint("series[middle].in", "series[middle..in"),
+              HasSubstr("must be a field of the result"));
   EXPECT_THAT(complaint("force_N = 0.2", "force_m = 0.2"), HasSubstr("unknown key"));
   EXPECT_FALSE(std::filesystem::exists(path("references")));
   EXPECT_EQ(run("benchmark benchmark.toml --case pusch --out a"), 2);
@@ -137,7 +145,8 @@ TEST_F(BenchmarkCommand, AnInterruptionKeepsWhatIsScored) {
   ASSERT_EQ(run("benchmark benchmark.toml --archive"), 0);
   std::string text = benchmark;
   for (int k = 0; k < 4; ++k)
-    text += "[[cases.models]]\nname = \"fine_" + std::to_string(k) + "\"\nset = { \"solver.elements\" = 20000 }\n";
+    text += "[[cases.models]]\nname = \"fine_" + std::to_string(k) +
+            "\"\nset = { \"solver.elements\" = 20000 }\n";
   write("benchmark.toml", text);
   const Ending ending = interrupt(start({"benchmark", "benchmark.toml", "--out", "a"}), 0.8);
   EXPECT_EQ(ending.status, 3);

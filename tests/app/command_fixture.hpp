@@ -58,7 +58,8 @@ class CommandFixture : public test::FolderFixture {
     std::ifstream status("/proc/" + std::to_string(child) + "/status");
     const std::string key = "SigCgt:";
     for (std::string line; std::getline(status, line);) {
-      if (line.starts_with(key)) return (std::stoull(line.substr(key.size()), nullptr, 16) >> (signal - 1) & 1U) != 0;
+      if (line.starts_with(key))
+        return (std::stoull(line.substr(key.size()), nullptr, 16) >> (signal - 1) & 1U) != 0;
     }
     return false;
   }

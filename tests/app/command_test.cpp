@@ -60,7 +60,8 @@ TEST_F(Command, NewWritesAStarterSet) {
   EXPECT_NE(again.err.find("must be a folder without that file"), std::string::npos) << again.err;
   const Result unknown = run("new ship --out other");
   EXPECT_EQ(unknown.status, 2);
-  EXPECT_NE(unknown.err.find("must be \"capture\", \"experiment\" or \"wire\""), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("must be \"capture\", \"experiment\" or \"wire\""), std::string::npos)
+      << unknown.err;
   EXPECT_FALSE(fs::exists(folder_ / "other"));
   EXPECT_EQ(run("new wire --out w").status, 0);
 }
@@ -101,10 +102,12 @@ TEST_F(Command, UnknownVerbsAndOptionsAreNamedWithTheNearest) {
   EXPECT_NE(run("jump").err.find("there are: reproduce, push, fit"), std::string::npos);
   const Result option = run("push --thread 2 x.toml");
   EXPECT_EQ(option.status, 2);
-  EXPECT_NE(option.err.find("snare push = --thread, unknown option; did you mean --threads?"), std::string::npos)
+  EXPECT_NE(option.err.find("snare push = --thread, unknown option; did you mean --threads?"),
+            std::string::npos)
       << option.err;
   EXPECT_NE(run("arm sho x.toml").err.find("did you mean show?"), std::string::npos);
-  EXPECT_EQ(run("push x.toml --set=wire.diameter_mm=1.4 --out=here").status, 0) << "values may stand behind a sign";
+  EXPECT_EQ(run("push x.toml --set=wire.diameter_mm=1.4 --out=here").status, 0)
+      << "values may stand behind a sign";
 }
 
 TEST_F(Command, PushAndFitTellTheDistanceFromTheReadings) {
@@ -158,7 +161,9 @@ TEST_F(Command, PushWritesTheCurves) {
   EXPECT_EQ(result.err, "");
   const std::string csv = contents("here/curves.csv");
   EXPECT_EQ(
-      csv.rfind("series,displacement_mm,force_N,tension_left_N,tension_right_N,contact_arc_mm,iterations,converged", 0),
+      csv.rfind(
+          "series,displacement_mm,force_N,tension_left_N,tension_right_N,contact_arc_mm,iterations,converged",
+          0),
       0u);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 11);
   EXPECT_EQ(csv.find("nan"), std::string::npos);
@@ -167,15 +172,16 @@ TEST_F(Command, PushWritesTheCurves) {
 
 TEST_F(Command, JsonAloneOnStandardOutputAndOverridesApply) {
   const Result plain = run("push x.toml --json");
-  const Result heavier = run("push x.toml --json --set wire.youngs_modulus_GPa=386 --set series[s40].points=3");
+  const Result heavier =
+      run("push x.toml --json --set wire.youngs_modulus_GPa=386 --set series[s40].points=3");
   ASSERT_EQ(plain.status, 0) << plain.err;
   ASSERT_EQ(heavier.status, 0) << heavier.err;
   const nlohmann::json a = nlohmann::json::parse(plain.out);
   const nlohmann::json b = nlohmann::json::parse(heavier.out);
   EXPECT_EQ(b["series"][0]["points"], 3);
   // Twice the modulus, the same shape: twice the force, to the solver's residual in forces of some 100 N.
-  EXPECT_NEAR(b["series"][1]["largest_force_N"].get<double>(), 2.0 * a["series"][1]["largest_force_N"].get<double>(),
-              1e-4);
+  EXPECT_NEAR(b["series"][1]["largest_force_N"].get<double>(),
+              2.0 * a["series"][1]["largest_force_N"].get<double>(), 1e-4);
 }
 
 TEST_F(Command, SameFilesForAnyNumberOfThreads) {
@@ -207,9 +213,10 @@ class SlowCommand : public Command {};
 
 // By the optimised command: three minutes under the sanitizers, of tracing, which SlowTrace runs under them.
 TEST_F(SlowCommand, ReproduceWritesCurvesJsonAndPage) {
-  const int status = shell("'" SNARE_SOURCE_DIR
-                           "/build/release/snare' reproduce --out here --quiet --set solver.elements=16 --set "
-                           "series[s40].points=12 --set series[s65].points=12 --set series[s90].points=12 2>err.txt");
+  const int status =
+      shell("'" SNARE_SOURCE_DIR
+            "/build/release/snare' reproduce --out here --quiet --set solver.elements=16 --set "
+            "series[s40].points=12 --set series[s65].points=12 --set series[s90].points=12 2>err.txt");
   ASSERT_EQ(status, 0) << contents("err.txt");
   const nlohmann::json json = parsed("here/reproduce.json");
   EXPECT_EQ(json["schema"], "snare-reproduce/1");
@@ -227,7 +234,8 @@ TEST_F(SlowCommand, ReproduceWritesCurvesJsonAndPage) {
   const std::string wire = contents("here/traced.toml");
   EXPECT_NE(wire.find("schema = \"snare-wire/1\""), std::string::npos) << wire;
   const std::string kind = json["trace"]["verdict_kind"];
-  EXPECT_EQ(wire.find("do not rely") != std::string::npos, kind == "not_explained" || kind == "cannot_tell") << wire;
+  EXPECT_EQ(wire.find("do not rely") != std::string::npos, kind == "not_explained" || kind == "cannot_tell")
+      << wire;
   EXPECT_EQ(run("distil here/traced.toml --out law --quiet --set table.points=[4,2,2] --set "
                 "table.most_points=[4,2,2] --set "
                 "solver.elements=16")
@@ -236,10 +244,12 @@ TEST_F(SlowCommand, ReproduceWritesCurvesJsonAndPage) {
       << contents("err.txt");
   const std::string page = contents("here/report.html");
   for (const nlohmann::json& model : json["models"]) {
-    EXPECT_NE(page.find("Error of the " + model["label"].get<std::string>()), std::string::npos) << model["label"];
+    EXPECT_NE(page.find("Error of the " + model["label"].get<std::string>()), std::string::npos)
+        << model["label"];
   }
   for (const char* position : {"40", "65", "90"}) {
-    EXPECT_NE(page.find(std::string("\">s\u00a0=\u00a0") + position + "\u00a0mm</h2>"), std::string::npos) << position;
+    EXPECT_NE(page.find(std::string("\">s\u00a0=\u00a0") + position + "\u00a0mm</h2>"), std::string::npos)
+        << position;
   }
 }
 

@@ -32,8 +32,12 @@ class DistilCommand : public CommandFixture {
   void SetUp() override { std::ofstream(folder_ / "w.toml") << wire_text; }
   /// Runs o/run.cpp, run.c and run.py with the exports beside them; what they print goes to o/cpp.txt, c.txt and py.txt.
   void run_exports() const {
-    ASSERT_EQ(shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"), 0);
-    ASSERT_EQ(shell("cd o && gcc -std=c99 -Wall -Wextra -Werror -O1 run.c law.c -lm -o run_c && ./run_c > c.txt"), 0);
+    ASSERT_EQ(
+        shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"),
+        0);
+    ASSERT_EQ(
+        shell("cd o && gcc -std=c99 -Wall -Wextra -Werror -O1 run.c law.c -lm -o run_c && ./run_c > c.txt"),
+        0);
     ASSERT_EQ(shell("cd o && python3 -I -B -c \"import sys; sys.path.insert(0, '.'); "
                     "exec(open('run.py').read())\" > py.txt"),
               0);
@@ -54,8 +58,8 @@ double library_force(const json& table, double d, double s, double e) {
     values.push_back(scale * nodes[n]);
     slopes.push_back(scale / span * nodes[n + 1]);
   }
-  const coupling::ForceTable rebuilt({table["travel"], table["position"], table["slack"]}, values, slopes, span,
-                                     scale * span * span, table["mirrored"]);
+  const coupling::ForceTable rebuilt({table["travel"], table["position"], table["slack"]}, values, slopes,
+                                     span, scale * span * span, table["mirrored"]);
   return rebuilt.force(d, s, e);
 }
 
@@ -111,7 +115,8 @@ TEST_F(DistilCommand, ExportsAgreeWithTheLibrary) {
     const auto number = [&](std::size_t k, const char* name) {
       return laws[k]["parameters"][name]["value"].get<double>();
     };
-    EXPECT_NEAR(values[40], (number(0, "A") * 0.002 + number(0, "B")) * 0.002 + number(0, "C"), 1e-12 * values[40]);
+    EXPECT_NEAR(values[40], (number(0, "A") * 0.002 + number(0, "B")) * 0.002 + number(0, "C"),
+                1e-12 * values[40]);
     EXPECT_NEAR(values[46], number(3, "k") * std::pow(0.002, number(3, "p")), 1e-12 * values[46]);
     EXPECT_GT(values[48], 0.0);  // stretched wire
   }
@@ -125,15 +130,19 @@ TEST_F(DistilCommand, ExportsAgreeWithTheLibrary) {
 TEST_F(DistilCommand, ResumesToTheSameBytes) {
   ASSERT_EQ(run("distil w.toml --out whole --quiet --threads 2"), 0) << contents("err.txt");
   // An interrupted run keeps its journal; kill it as soon as there is some of it.
-  ASSERT_EQ(shell(std::string("( '") + SNARE_COMMAND +
-                  "' distil w.toml --out part --quiet --threads 1 & pid=$!; for i in $(seq 2000); do [ $(stat -c %s "
-                  "part/distil.journal 2>/dev/null || echo 0) -gt 60000 ] && break; sleep 0.005; done; kill -9 $pid; "
-                  "wait $pid ) >/dev/null 2>&1; test -s part/distil.journal && ! test -e part/law.json"),
-            0);
-  fs::resize_file(folder_ / "part" / "distil.journal", fs::file_size(folder_ / "part" / "distil.journal") - 37);
+  ASSERT_EQ(
+      shell(
+          std::string("( '") + SNARE_COMMAND +
+          "' distil w.toml --out part --quiet --threads 1 & pid=$!; for i in $(seq 2000); do [ $(stat -c %s "
+          "part/distil.journal 2>/dev/null || echo 0) -gt 60000 ] && break; sleep 0.005; done; kill -9 $pid; "
+          "wait $pid ) >/dev/null 2>&1; test -s part/distil.journal && ! test -e part/law.json"),
+      0);
+  fs::resize_file(folder_ / "part" / "distil.journal",
+                  fs::file_size(folder_ / "part" / "distil.journal") - 37);
   ASSERT_EQ(run("distil w.toml --out part --quiet --threads 1"), 0) << contents("err.txt");
-  for (const char* file : {"law.json", "table.csv", "law.hpp", "law.c", "law.h", "law.py", "law.mo", "law_mujoco.xml",
-                           "law_mujoco_linear.xml", "law_simulink.csv", "law_adams.adm", "report.html"}) {
+  for (const char* file :
+       {"law.json", "table.csv", "law.hpp", "law.c", "law.h", "law.py", "law.mo", "law_mujoco.xml",
+        "law_mujoco_linear.xml", "law_simulink.csv", "law_adams.adm", "report.html"}) {
     EXPECT_EQ(contents(fs::path("whole") / file), contents(fs::path("part") / file)) << file;
   }
 }
@@ -173,9 +182,10 @@ TEST_F(DistilCommand, LoopsAreDistilledFromFriction) {
   calls_py += "print(repr(law.force_unloading(0.001, 0.04, 175.49e-3 - 175e-3)))\n";
 
   std::ofstream(folder_ / "o" / "run.py") << "import law\nmemory = [1.0, 0.0]\n" << calls_py;
-  std::ofstream(folder_ / "o" / "run.cpp") << "#include \"law.hpp\"\n#include <cstdio>\n#define N snare_law::\n"
-                                           << "int main() {\n  double z = 1.0, l = 0.0;\n"
-                                           << calls_c << "}\n";
+  std::ofstream(folder_ / "o" / "run.cpp")
+      << "#include \"law.hpp\"\n#include <cstdio>\n#define N snare_law::\n"
+      << "int main() {\n  double z = 1.0, l = 0.0;\n"
+      << calls_c << "}\n";
   std::ofstream(folder_ / "o" / "run.c")
       << "#include <stdio.h>\n#define N\ndouble load_unload_s40(double, double*, double*);\n"
       << "double force_unloading(double, double, double);\nint main(void) {\n  double z = 1.0, l = 0.0;\n"
@@ -235,7 +245,8 @@ TEST_F(DistilCommand, ComparesModelsOfAWireAndOfAnExperiment) {
   EXPECT_EQ(models.back()["model"], "stretched_wire_published");
   for (std::size_t i = 1; i < models.size(); ++i) {
     EXPECT_GT(models[i]["seconds_per_evaluation"].get<double>(), 0.0);
-    EXPECT_LT(models[i]["seconds_per_evaluation"].get<double>(), models[0]["seconds_per_evaluation"].get<double>());
+    EXPECT_LT(models[i]["seconds_per_evaluation"].get<double>(),
+              models[0]["seconds_per_evaluation"].get<double>());
   }
   std::string experiment = wire_text;
   experiment.replace(experiment.find("snare-wire"), 10, "snare-experiment");

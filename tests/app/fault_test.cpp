@@ -22,7 +22,8 @@ class Faults : public CommandFixture {
     Files all;
     if (!fs::exists(folder_ / out)) return all;
     for (const auto& entry : fs::recursive_directory_iterator(folder_ / out)) {
-      if (entry.is_regular_file()) all[fs::relative(entry.path(), folder_ / out).string()] = contents(entry.path());
+      if (entry.is_regular_file())
+        all[fs::relative(entry.path(), folder_ / out).string()] = contents(entry.path());
     }
     return all;
   }
@@ -34,10 +35,10 @@ class Faults : public CommandFixture {
   [[nodiscard]] Failed failing(const std::string& call, int at, const std::string& arguments,
                                const std::string& to = "--out failed >out.txt 2>err.txt") const {
     fs::remove(path("note"));
-    const int status =
-        shell("export ASAN_OPTIONS=verify_asan_link_order=0 SNARE_FAIL_CALL=" + call +
-              " SNARE_FAIL_AT=" + std::to_string(at) +
-              " SNARE_FAIL_NOTE=note; LD_PRELOAD='" SNARE_FAIL_NTH "' '" SNARE_COMMAND "' " + arguments + " " + to);
+    const int status = shell("export ASAN_OPTIONS=verify_asan_link_order=0 SNARE_FAIL_CALL=" + call +
+                             " SNARE_FAIL_AT=" + std::to_string(at) +
+                             " SNARE_FAIL_NOTE=note; LD_PRELOAD='" SNARE_FAIL_NTH "' '" SNARE_COMMAND "' " +
+                             arguments + " " + to);
     return {status, fs::exists(path("note"))};
   }
 
@@ -93,17 +94,18 @@ class Faults : public CommandFixture {
   }
 
   /// `every`: one call in so many of each kind; `stride`: of those that write a log line by line.
-  void expect_promises(const std::string& arguments, const std::string& spared = "", const std::string& kept = "",
-                       int every = 1, int stride = 1) {
+  void expect_promises(const std::string& arguments, const std::string& spared = "",
+                       const std::string& kept = "", int every = 1, int stride = 1) {
     fs::remove_all(folder_ / "whole");
     ASSERT_EQ(run(arguments + " --out whole"), 0) << contents("err.txt");
     const Files whole = files("whole");
     int found = 0;
-    for (const char* call : {"fopen", "fwrite", "fflush", "fsync", "fclose", "rename", "mkdir", "write", "pwrite",
-                             "ftruncate", "fdatasync"}) {
+    for (const char* call : {"fopen", "fwrite", "fflush", "fsync", "fclose", "rename", "mkdir", "write",
+                             "pwrite", "ftruncate", "fdatasync"}) {
       constexpr int most = 300;  // more calls than any of these runs makes
-      const int step =
-          std::string_view(call) == "fwrite" || std::string_view(call) == "fflush" ? std::max(every, stride) : every;
+      const int step = std::string_view(call) == "fwrite" || std::string_view(call) == "fflush"
+                           ? std::max(every, stride)
+                           : every;
       int at = 1;
       for (; at < most && !HasFatalFailure(); at += step, ++found) {
         if (!expect_promise(call, at, arguments, whole, spared, kept)) break;
@@ -115,7 +117,8 @@ class Faults : public CommandFixture {
   /// A result that standard output does not take is a failure, too.
   void expect_full(const std::string& arguments) const {
     EXPECT_EQ(shell("'" SNARE_COMMAND "' " + arguments + " --json >/dev/full 2>err.txt"), 1) << arguments;
-    EXPECT_NE(contents("err.txt").find("standard output: cannot be written"), std::string::npos) << contents("err.txt");
+    EXPECT_NE(contents("err.txt").find("standard output: cannot be written"), std::string::npos)
+        << contents("err.txt");
   }
   /// Those of the range test, which are small.
   [[nodiscard]] static std::string small(const std::string& name) {
@@ -127,10 +130,11 @@ class Faults : public CommandFixture {
 };
 
 TEST_F(Faults, Push) {
-  write("x.toml", "schema = \"snare-experiment/1\"\ntitle = \"test\"\nsource = \"none\"\n" +
-                      test::wire_tables("180.0") +
-                      "[solver]\nelements = 16\n[[series]]\nname = \"s\"\ncontact_position_mm = 60.0\ntravel_mm = "
-                      "1.0\npoints = 3\n");
+  write("x.toml",
+        "schema = \"snare-experiment/1\"\ntitle = \"test\"\nsource = \"none\"\n" +
+            test::wire_tables("180.0") +
+            "[solver]\nelements = 16\n[[series]]\nname = \"s\"\ncontact_position_mm = 60.0\ntravel_mm = "
+            "1.0\npoints = 3\n");
   expect_promises("push x.toml --quiet");
 }
 
@@ -145,9 +149,11 @@ TEST_F(Faults, DistilGoesOnWithoutAJournal) {
     fs::remove_all(folder_ / "failed");
     EXPECT_EQ(failing(call, at, distil).status, 0) << call;
     const std::string said = contents("err.txt");
-    EXPECT_NE(said.find("failed/distil.journal: cannot be written: No space left on device; goes on, but a run that is "
-                        "interrupted begins anew"),
-              std::string::npos)
+    EXPECT_NE(
+        said.find(
+            "failed/distil.journal: cannot be written: No space left on device; goes on, but a run that is "
+            "interrupted begins anew"),
+        std::string::npos)
         << call << ": " << said;
     const Files left = files("failed");
     EXPECT_EQ(left.size(), whole.size()) << call;
@@ -165,7 +171,8 @@ TEST_F(Faults, NewLeavesNoPartOfASet) {
       const Failed end = failing(call, at, "new capture --quiet");
       if (!end.met) break;
       EXPECT_EQ(end.status, 1);
-      EXPECT_NE(contents("err.txt").find("No space left on device"), std::string::npos) << contents("err.txt");
+      EXPECT_NE(contents("err.txt").find("No space left on device"), std::string::npos)
+          << contents("err.txt");
       EXPECT_TRUE(files("failed").empty());
       EXPECT_EQ(run("new capture --quiet --out failed"), 0) << contents("err.txt");
     }
@@ -267,10 +274,12 @@ set = { "solver.elements" = 16 }
       const Failed end = failing(call, at, "benchmark other.toml --archive", ">out.txt 2>err.txt");
       if (!end.met) break;
       EXPECT_EQ(end.status, 1);
-      EXPECT_NE(contents("err.txt").find("No space left on device"), std::string::npos) << contents("err.txt");
+      EXPECT_NE(contents("err.txt").find("No space left on device"), std::string::npos)
+          << contents("err.txt");
       const Files now = files("references");
       EXPECT_EQ(now.size(), before.size());
-      const bool same = now.at("push.csv") == before.at("push.csv") && now.at("push.json") == before.at("push.json");
+      const bool same =
+          now.at("push.csv") == before.at("push.csv") && now.at("push.json") == before.at("push.json");
       EXPECT_EQ(run("benchmark benchmark.toml --out scored"), same ? 0 : 2) << contents("err.txt");
     }
   }
@@ -282,13 +291,15 @@ TEST_F(SlowFaults, ValidateWritesItsPartOrSaysWhyNot) {
     for (int at = 1; at <= 2; ++at) {
       SCOPED_TRACE(std::string(call) + " " + std::to_string(at));
       fs::remove_all(folder_ / "failed");
-      const Failed end =
-          failing(call, at, "validate --quiet", "--out failed >out.txt 2>err.txt & sleep 3; kill -INT $!; wait $!");
+      const Failed end = failing(call, at, "validate --quiet",
+                                 "--out failed >out.txt 2>err.txt & sleep 3; kill -INT $!; wait $!");
       ASSERT_TRUE(end.met);
       EXPECT_TRUE(end.status == 1 || end.status == 3) << end.status;
-      EXPECT_NE(contents("err.txt").find("No space left on device"), std::string::npos) << contents("err.txt");
+      EXPECT_NE(contents("err.txt").find("No space left on device"), std::string::npos)
+          << contents("err.txt");
       for (const auto& [name, text] : files("failed"))
-        EXPECT_TRUE(name.ends_with(".html") ? text.ends_with("</html>\n") : nlohmann::json::accept(text)) << name;
+        EXPECT_TRUE(name.ends_with(".html") ? text.ends_with("</html>\n") : nlohmann::json::accept(text))
+            << name;
     }
   }
 }

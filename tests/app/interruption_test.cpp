@@ -40,7 +40,8 @@ std::string chain(int joints) {
   for (int k = 0; k <= joints; ++k) text += "<link name='l" + std::to_string(k) + "'>" + inertial + "</link>";
   for (int k = 0; k < joints; ++k) {
     text += "<joint name='j" + std::to_string(k) + "' type='continuous'><parent link='l" + std::to_string(k) +
-            "'/><child link='l" + std::to_string(k + 1) + "'/><origin xyz='1 0 0'/><axis xyz='0 0 1'/></joint>";
+            "'/><child link='l" + std::to_string(k + 1) +
+            "'/><origin xyz='1 0 0'/><axis xyz='0 0 1'/></joint>";
   }
   return text + "</robot>";
 }
@@ -88,7 +89,8 @@ TEST_F(Interruption, ManySeries) {
 }
 
 TEST_F(Interruption, FitOfManyReadings) {
-  write("x.toml", experiment(64, 2) + "[[series]]\nname = \"long\"\ncontact_position_mm = 60.0\nfile = \"long.csv\"\n");
+  write("x.toml",
+        experiment(64, 2) + "[[series]]\nname = \"long\"\ncontact_position_mm = 60.0\nfile = \"long.csv\"\n");
   std::string csv = "displacement_mm,force_N\n";
   for (int i = 0; i < 300000; ++i) csv += std::to_string(1e-5 * i) + "," + std::to_string(1e-4 * i) + "\n";
   write("long.csv", csv);
@@ -148,9 +150,9 @@ TEST_F(Interruption, DistilAndCompareAndSimulate) {
   expect_answer({"simulate", data + "/scenarios/grapple_shaft.toml", "--out", "here"}, 2.0);
   EXPECT_TRUE(parsed("here/summary.json")["interrupted"].get<bool>());
   // One step of such a wire takes longer than an answer may.
-  expect_answer(
-      {"simulate", data + "/scenarios/grapple_shaft.toml", "--out", "fine", "--set", "wires[lower].elements=2000"},
-      3.0);
+  expect_answer({"simulate", data + "/scenarios/grapple_shaft.toml", "--out", "fine", "--set",
+                 "wires[lower].elements=2000"},
+                3.0);
 }
 
 /// What a verb is asked that takes longer than a test waits, in a folder with the files of `AtAnyMoment`.
@@ -197,12 +199,14 @@ class AtAnyMoment : public Interruption, public testing::WithParamInterface<Long
     for (int i = 0; i < 100000; ++i) csv += std::to_string(3e-5 * i) + "," + std::to_string(1e-4 * i) + "\n";
     write("long.csv", csv);
     const std::string text = experiment(128, 2);
-    write("readings.toml", text.substr(0, text.find("[[series]]")) +
-                               "[[series]]\nname = \"long\"\ncontact_position_mm = 60.0\nfile = \"long.csv\"\n"
-                               "[fit]\nfree = [\"wire.bending_stiffness_Nm2\"]\n");
+    write("readings.toml",
+          text.substr(0, text.find("[[series]]")) +
+              "[[series]]\nname = \"long\"\ncontact_position_mm = 60.0\nfile = \"long.csv\"\n"
+              "[fit]\nfree = [\"wire.bending_stiffness_Nm2\"]\n");
     std::string swings = "time_s,displacement_mm\n";
     for (int i = 0; i < 100000; ++i)
-      swings += std::to_string(1e-4 * i) + "," + std::to_string(std::exp(-1e-4 * i) * std::sin(0.05 * i)) + "\n";
+      swings +=
+          std::to_string(1e-4 * i) + "," + std::to_string(std::exp(-1e-4 * i) * std::sin(0.05 * i)) + "\n";
     write("swings.csv", swings);
     std::string ringdown = "schema = \"snare-ringdown/1\"\ntitle = \"test\"\nsource = \"none\"\n";
     for (int k = 0; k < 20; ++k)
@@ -212,20 +216,21 @@ class AtAnyMoment : public Interruption, public testing::WithParamInterface<Long
     for (int i = 0; i < 100000; ++i)
       swing += std::to_string(1e-3 * i) + "," + std::to_string(40.0 * std::cos(3e-3 * i)) + "\n";
     write("swing.csv", swing);
-    write("record.toml",
-          "schema = \"snare-record/1\"\ntitle = \"test\"\nscenario = \"" SNARE_SOURCE_DIR
-          "/tests/ranges/swing.toml\"\n[[records]]\nname = \"first\"\nfile = \"swing.csv\"\n"
-          "columns = { angle_deg = \"encoder\" }\n[fit]\nfree = [\"arms[pendulum].joint.bearing.viscous_Nms_rad\"]\n");
+    write("record.toml", "schema = \"snare-record/1\"\ntitle = \"test\"\nscenario = \"" SNARE_SOURCE_DIR
+                         "/tests/ranges/swing.toml\"\n[[records]]\nname = \"first\"\nfile = \"swing.csv\"\n"
+                         "columns = { angle_deg = \"encoder\" }\n[fit]\nfree = "
+                         "[\"arms[pendulum].joint.bearing.viscous_Nms_rad\"]\n");
     write("one.toml", experiment(64, 20));
     write("sweep.toml",
           "schema = \"snare-sweep/1\"\ntitle = \"test\"\ncase = \"one.toml\"\ndesign = \"latin_hypercube\"\n"
           "cases = 100000\n[set]\n\"solver.extrapolate\" = false\n[[vary]]\nkey = \"wire.length_mm\"\n"
           "uniform = [179.0, 181.0]\n[collect]\nforce = \"series[s0].largest_force_N\"\n");
-    write("benchmark.toml",
-          "schema = \"snare-benchmark/1\"\ntitle = \"test\"\n[[cases]]\nname = \"push\"\nfile = \"fine.toml\"\n"
-          "x = \"displacement_mm\"\n[cases.quantities]\nforce_N = \"force_N\"\n"
-          "[[cases.refinements]]\nset = { \"solver.elements\" = 10000 }\n[[cases.refinements]]\n"
-          "[[cases.models]]\nname = \"coarse\"\n");
+    write(
+        "benchmark.toml",
+        "schema = \"snare-benchmark/1\"\ntitle = \"test\"\n[[cases]]\nname = \"push\"\nfile = \"fine.toml\"\n"
+        "x = \"displacement_mm\"\n[cases.quantities]\nforce_N = \"force_N\"\n"
+        "[[cases.refinements]]\nset = { \"solver.elements\" = 10000 }\n[[cases.refinements]]\n"
+        "[[cases.models]]\nname = \"coarse\"\n");
     write_chain(600);
     std::string angles = "0";
     for (int i = 1; i < 600; ++i) angles += ", 0";
@@ -278,8 +283,9 @@ TEST_F(Interruption, EveryVerbIsAsked) {
     std::string verb;
     if (!(words >> verb)) continue;
     ++verbs;
-    EXPECT_TRUE(verb == "new" || verb == "export" ||  // they compute nothing that takes time
-                std::ranges::any_of(long_work, [&](const LongWork& w) { return w.arguments.front() == verb; }))
+    EXPECT_TRUE(
+        verb == "new" || verb == "export" ||  // they compute nothing that takes time
+        std::ranges::any_of(long_work, [&](const LongWork& w) { return w.arguments.front() == verb; }))
         << verb;
   }
   EXPECT_GE(verbs, 13);
@@ -291,7 +297,8 @@ TEST_F(Interruption, ASecondSignalEndsAtOnce) {
   std::this_thread::sleep_for(std::chrono::seconds(1));
   ::kill(child, SIGINT);
   const Ending end = interrupt(child, 0.1);
-  EXPECT_TRUE(end.status == -SIGINT || end.status == 3) << end.status;  // the first one may have been answered already
+  EXPECT_TRUE(end.status == -SIGINT || end.status == 3)
+      << end.status;  // the first one may have been answered already
   EXPECT_LT(end.seconds, 0.5);
 }
 

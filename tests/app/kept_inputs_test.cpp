@@ -41,7 +41,8 @@ file = "ringdown.csv"
     std::string curve = "displacement_mm,force_N\n";
     for (int i = 0; i < 12; ++i) curve += std::to_string(0.1 * i) + "," + std::to_string(0.3 * i) + "\n";
     write("in/curves.csv", curve);
-    write("in/measured.toml", push.substr(0, push.find("travel_mm")) + "file = \"curves.csv\"\nforce_sigma_N = 0.1\n" +
+    write("in/measured.toml", push.substr(0, push.find("travel_mm")) +
+                                  "file = \"curves.csv\"\nforce_sigma_N = 0.1\n" +
                                   "[solver]\nelements = 16\n[fit]\nfree = [\"wire.length_mm\"]\n");
     write("in/wire.csv", "time_s,x_mm\n0,0\n0.01,1\n");
     write("in/fall.toml", R"(schema = "snare-scenario/2"
@@ -161,7 +162,8 @@ TEST_F(KeptInputs, StandardStreams) {
                                  "compare in/one.toml", "sweep in/sweep.toml", "fit in/measured.toml"}) {
     SCOPED_TRACE(verb);
     const std::string line = command + verb + " --out out ";
-    for (const std::string streams : {"2>/dev/full", "2>&-", ">&-", "<&-", ">&- 2>&- <&-", ">/dev/full 2>/dev/full"}) {
+    for (const std::string streams :
+         {"2>/dev/full", "2>&-", ">&-", "<&-", ">&- 2>&- <&-", ">/dev/full 2>/dev/full"}) {
       EXPECT_EQ(shell(line + streams), 0) << streams;
       fs::remove_all(path("out"));
     }
@@ -179,7 +181,8 @@ TEST_F(KeptInputs, StandardStreams) {
 
 TEST_F(KeptInputs, HangUpAndTheEndOfProcessorTimeKeepWhatIsFinished) {
   for (const int signal : {SIGHUP, SIGXCPU}) {
-    const pid_t child = start({"sweep", "in/sweep.toml", "--out", "out", "--threads", "1", "--set", "cases=20000"});
+    const pid_t child =
+        start({"sweep", "in/sweep.toml", "--out", "out", "--threads", "1", "--set", "cases=20000"});
     const Ending end = interrupt(child, 0.5, signal);
     EXPECT_EQ(end.status, 3) << signal;
     EXPECT_THAT(contents("err.txt"), HasSubstr("cases are finished and kept")) << signal;

@@ -35,7 +35,8 @@ TEST(ReproduceJson, HasTheNumbersOfTheResult) {
 
 TEST(ReproduceJson, SaysWhatIsMissing) {
   Reproduction result = reproduction();
-  result.models[0].predictions[0].curve.curve.report = {numerics::Termination::interrupted, 0, 0.0, "interrupted"};
+  result.models[0].predictions[0].curve.curve.report = {numerics::Termination::interrupted, 0, 0.0,
+                                                        "interrupted"};
   result.models[1].predictions.clear();
   const json j = reproduce_json(result);
   EXPECT_EQ(j["series"][0]["models"]["declared"]["stopped"], "interrupted");

@@ -13,8 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string experiment(int elements) {
-  return "schema = \"snare-experiment/1\"\ntitle = \"test\"\nsource = \"none\"\n" + test::wire_tables("180.0") +
-         "[solver]\nelements = " + std::to_string(elements) +
+  return "schema = \"snare-experiment/1\"\ntitle = \"test\"\nsource = \"none\"\n" +
+         test::wire_tables("180.0") + "[solver]\nelements = " + std::to_string(elements) +
          "\n[[series]]\nname = \"s\"\ncontact_position_mm = 60.0\ntravel_mm = 3.0\npoints = 21\n";
 }
 
@@ -39,7 +39,8 @@ TEST_F(Refusals, FoldersThatCannotBeWrittenAreFoundBeforeComputing) {
     EXPECT_EQ(refused(verb + " --out file/below"), 2) << verb;
     EXPECT_EQ(refused(verb + " --out /proc/nowhere"), 1) << verb;
     EXPECT_EQ(refused(verb + " --out ''"), 2) << verb;
-    EXPECT_NE(contents("err.txt").find("--out = '', must name a folder"), std::string::npos) << contents("err.txt");
+    EXPECT_NE(contents("err.txt").find("--out = '', must name a folder"), std::string::npos)
+        << contents("err.txt");
   }
   EXPECT_EQ(refused("push long.toml --out taken"), 1);
   EXPECT_NE(contents("err.txt").find("taken/curves.csv"), std::string::npos) << contents("err.txt");
@@ -74,15 +75,17 @@ TEST_F(Refusals, AFolderOfAnotherRunIsNamedWithThatRun) {
 
 TEST_F(Refusals, AFullStandardOutputIsAFailure) {
   const std::string chain = SNARE_SOURCE_DIR "/data/arms/jemrms_like.toml";
-  for (const std::string& arguments : {std::string("push x.toml --json"), "arm show " + chain,
-                                       "arm show --json " + chain, std::string("--help"), std::string("--version")}) {
+  for (const std::string& arguments :
+       {std::string("push x.toml --json"), "arm show " + chain, "arm show --json " + chain,
+        std::string("--help"), std::string("--version")}) {
     EXPECT_EQ(shell("'" SNARE_COMMAND "' " + arguments + " >/dev/full 2>err.txt"), 1) << arguments;
     EXPECT_NE(contents("err.txt").find("standard output: cannot be written: No space left on device"),
               std::string::npos)
         << contents("err.txt");
   }
   // Nobody reads on.
-  EXPECT_EQ(shell("sh -c \"'" SNARE_COMMAND "' push x.toml --json; echo \\$? >status.txt\" 2>err.txt | true"), 0);
+  EXPECT_EQ(shell("sh -c \"'" SNARE_COMMAND "' push x.toml --json; echo \\$? >status.txt\" 2>err.txt | true"),
+            0);
   EXPECT_EQ(contents("status.txt"), "1\n");
 }
 

@@ -27,7 +27,8 @@ class SimulateCheckpoint : public CommandFixture {
   [[nodiscard]] static std::vector<std::string> arguments_of(const std::string& scenario, const fs::path& out,
                                                              const std::vector<std::string>& settings) {
     std::vector<std::string> list{SNARE_COMMAND, "simulate",
-                                  std::string(SNARE_SOURCE_DIR) + "/data/scenarios/" + scenario, "--out", out.string()};
+                                  std::string(SNARE_SOURCE_DIR) + "/data/scenarios/" + scenario, "--out",
+                                  out.string()};
     for (const std::string& setting : settings) list.insert(list.end(), {"--set", setting});
     return list;
   }
@@ -176,9 +177,9 @@ TEST_F(SimulateCheckpoint, AnInterruptedRunKeepsWhatItHasAndGoesOn) {
 TEST_F(SimulateCheckpoint, AFailureNamesTimeStepAndUnknownAndKeepsTheRest) {
   // Tolerances below round-off cannot be met.
   std::vector<std::string> list = arguments(folder_ / "out");
-  for (const char* set :
-       {"solver.relative_tolerance=1e-10", "solver.position_tolerance_m=1e-30", "solver.velocity_tolerance_m_s=1e-30",
-        "solver.body_position_tolerance_m=1e-30", "solver.body_velocity_tolerance_m_s=1e-30"}) {
+  for (const char* set : {"solver.relative_tolerance=1e-10", "solver.position_tolerance_m=1e-30",
+                          "solver.velocity_tolerance_m_s=1e-30", "solver.body_position_tolerance_m=1e-30",
+                          "solver.body_velocity_tolerance_m_s=1e-30"}) {
     list.insert(list.end(), {"--set", set});
   }
   ASSERT_EQ(run(list), 3) << contents("log.txt");

@@ -19,8 +19,8 @@ class SimulateCommand : public CommandFixture {
  protected:
   /// Exit status of `snare simulate SCENARIO --out out ARGUMENTS`; what it says goes to log.txt.
   [[nodiscard]] int run(const std::string& scenario, const std::string& arguments) const {
-    return shell("'" SNARE_COMMAND "' simulate '" SNARE_SOURCE_DIR "/data/scenarios/" + scenario + "' --out out " +
-                 arguments + " >log.txt 2>&1");
+    return shell("'" SNARE_COMMAND "' simulate '" SNARE_SOURCE_DIR "/data/scenarios/" + scenario +
+                 "' --out out " + arguments + " >log.txt 2>&1");
   }
   [[nodiscard]] json summary() const { return parsed("out/summary.json"); }
 };
@@ -36,7 +36,8 @@ TEST_F(SimulateCommand, AirTable) {
   EXPECT_LT(body["velocity_after_m_s"][1].get<double>(), 0.0);
   EXPECT_LT(body["spin_after_rad_s"][2].get<double>(), 0.0);
   // Momentum: what the target lost the wire and its mounts got.
-  EXPECT_NEAR(8.9 * (0.1 - body["velocity_after_m_s"][1].get<double>()), wire["impulse_Ns"][1].get<double>(), 1e-6);
+  EXPECT_NEAR(8.9 * (0.1 - body["velocity_after_m_s"][1].get<double>()), wire["impulse_Ns"][1].get<double>(),
+              1e-6);
   EXPECT_LT(std::abs(s["momentum_error_Ns"][1].get<double>()), 1e-6);
   EXPECT_LT(std::abs(s["angular_momentum_error_Nms"][2].get<double>()), 1e-6);
   // The energy of the impact is 0.0445 J; the integrator's own error is within a thousandth of it at default tolerances.
@@ -46,12 +47,48 @@ TEST_F(SimulateCommand, AirTable) {
   EXPECT_NE(contents("out/report.html").find("class=\"scene\""), std::string::npos);
   EXPECT_NE(contents("out/motion.pvd").find("motion_00000.vtp"), std::string::npos);
   EXPECT_EQ(contents("out/history.csv").find("nan"), std::string::npos);
-  ASSERT_EQ(run("air_table.toml", shorter + "--set 'wires[wire].model=\"quadratic\"'"), 0) << contents("log.txt");
+  ASSERT_EQ(run("air_table.toml", shorter + "--set 'wires[wire].model=\"quadratic\"'"), 0)
+      << contents("log.txt");
   const json by_law = summary();
   const json& law = by_law["contacts"][0];
   EXPECT_GT(wire["peak_force_N"].get<double>(), 2.0 * law["peak_force_N"].get<double>());
   EXPECT_NEAR(wire["impulse_Ns"][1].get<double>() / law["impulse_Ns"][1].get<double>(), 1.0, 0.1);
   EXPECT_NE(contents("out/history.csv").find("wire tension_N"), std::string::npos);
+}
+
+// The wire is a law without mass, and the shape is fixed to the world.
+TEST_F(SimulateCommand, RejectsAScenarioInWhichNothingCanMove) {
+  write("still.toml", R"(schema = "snare-scenario/2"
+title = "still"
+source = "a test"
+duration_s = 0.01
+[[shapes]]
+name = "post"
+frame = "world"
+kind = "capsule"
+position_mm = [20.0, 0.0, 50.0]
+rotation_deg = [90.0, 0.0, 0.0]
+length_mm = 40.0
+radius_mm = 3.0
+[[wires]]
+name = "a"
+construction = "solid"
+diameter_mm = 1.5
+length_mm = 100.0
+youngs_modulus_GPa = 193.0
+poisson_ratio = 0.29
+density_kg_m3 = 7930.0
+from_mm = [0.0, 0.0, 0.0]
+to_mm = [0.0, 0.0, 99.0]
+bulge = [1.0, 0.0, 0.0]
+mount = "pinned"
+model = "stretched"
+)");
+  EXPECT_EQ(CommandFixture::run("simulate still.toml --out out"), 2);
+  EXPECT_NE(contents("err.txt").find("nothing can move: no wire with mass, no body, no arm"),
+            std::string::npos)
+      << contents("err.txt");
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
 // What sensors read stands in telemetry.csv; the summary has its least, largest and last, and what the joints bore.
@@ -86,7 +123,8 @@ TEST_F(SimulateCommand, TellsWhatSensorsReadAndJointsBore) {
 
 // The arm with its carriage locked at first: what swings are its joints.
 TEST_F(SimulateCommand, TellsWhatItSwingsByAtTheEnd) {
-  ASSERT_EQ(run("ssrms_rigidize.toml", "--set duration_s=0.2 --set output.modes=true"), 0) << contents("log.txt");
+  ASSERT_EQ(run("ssrms_rigidize.toml", "--set duration_s=0.2 --set output.modes=true"), 0)
+      << contents("log.txt");
   const json s = summary();
   ASSERT_GT(s["modes"].size(), 5U);
   double before = 0.0;
@@ -102,10 +140,11 @@ TEST_F(SimulateCommand, TellsWhatItSwingsByAtTheEnd) {
 
 TEST_F(SimulateCommand, PayloadMeetsTheWireInAnEndEffector) {
   for (const char* name : {"jemrms_capture.toml", "jemrms_payload_on_wire.toml"}) {
-    ASSERT_EQ(run(name,
-                  "--set duration_s=0.04 --set wires[wire].elements=24 --set 'bodies[payload].position_mm=[-10.0, "
-                  "-487.96, 0.0]'"),
-              0)
+    ASSERT_EQ(
+        run(name,
+            "--set duration_s=0.04 --set wires[wire].elements=24 --set 'bodies[payload].position_mm=[-10.0, "
+            "-487.96, 0.0]'"),
+        0)
         << contents("log.txt");
     const json s = summary();
     EXPECT_TRUE(s["finished"].get<bool>());
@@ -120,11 +159,14 @@ TEST_F(SimulateCommand, PayloadMeetsTheWireInAnEndEffector) {
 
 // The buckled wire's bending alone, E d/2 times some 12/m, is more than 100 N on its section: the run ends at its first step.
 TEST_F(SimulateCommand, AWireThatReachesItsStrengthEndsTheRunAndKeepsWhatItReached) {
-  const std::string strength = "--set duration_s=0.01 --set wires[wire].elements=32 --set wires[wire].strength_N=100";
-  ASSERT_EQ(run("air_table.toml", strength + " --set 'wires[wire].at_strength=\"stop\"'"), 3) << contents("log.txt");
+  const std::string strength =
+      "--set duration_s=0.01 --set wires[wire].elements=32 --set wires[wire].strength_N=100";
+  ASSERT_EQ(run("air_table.toml", strength + " --set 'wires[wire].at_strength=\"stop\"'"), 3)
+      << contents("log.txt");
   const json stopped = summary();
   EXPECT_FALSE(stopped["finished"].get<bool>());
-  EXPECT_NE(stopped["message"].get<std::string>().find("wire reaches its strength of 100 N"), std::string::npos);
+  EXPECT_NE(stopped["message"].get<std::string>().find("wire reaches its strength of 100 N"),
+            std::string::npos);
   ASSERT_EQ(stopped["strength"].size(), 1u);
   EXPECT_GT(stopped["strength"][0]["largest_share"].get<double>(), 1.0);
   EXPECT_NE(contents("out/history.csv").find("\n0,"), std::string::npos);
@@ -216,7 +258,8 @@ name = "crossing"
 wire = "upper"
 other_wire = "lower"
 )";
-  ASSERT_EQ(shell("'" SNARE_COMMAND "' simulate wires.toml --out out >log.txt 2>&1"), 0) << contents("log.txt");
+  ASSERT_EQ(shell("'" SNARE_COMMAND "' simulate wires.toml --out out >log.txt 2>&1"), 0)
+      << contents("log.txt");
   const json s = summary();
   EXPECT_TRUE(s["finished"].get<bool>());
   EXPECT_TRUE(s["bodies"].empty());
@@ -230,7 +273,8 @@ TEST_F(SimulateCommand, JointStepSwingsSlowerAsItDies) {
   const json s = summary();
   ASSERT_GE(s["swings"].size(), 2u);
   // The joint is soft within 0.04 deg (Abiko et al., Table 2): small swings are slower.
-  EXPECT_GT(s["swings"].front()["frequency_Hz"].get<double>(), s["swings"].back()["frequency_Hz"].get<double>());
+  EXPECT_GT(s["swings"].front()["frequency_Hz"].get<double>(),
+            s["swings"].back()["frequency_Hz"].get<double>());
   // The spring began with the work of half a degree, some 0.95 J.
   EXPECT_LT(std::abs(s["energy_J"]["integrator"].get<double>()), 1e-3 * 0.95);
   EXPECT_NE(contents("out/report.html").find("Swings of the joint"), std::string::npos);
@@ -248,8 +292,8 @@ TEST_F(SimulateCommand, AnglesOfTheFilesHaveNoTailInTheHistory) {
     return cells;
   };
   const std::vector<std::string> names = cells_of();
-  const auto column =
-      static_cast<std::size_t>(std::find(names.begin(), names.end(), "rms::joint_3 motor_deg") - names.begin());
+  const auto column = static_cast<std::size_t>(
+      std::find(names.begin(), names.end(), "rms::joint_3 motor_deg") - names.begin());
   ASSERT_LT(column, names.size());
   for (int k = 0; k < 3; ++k) EXPECT_EQ(cells_of().at(column), "80.5");
 }
@@ -268,7 +312,8 @@ TEST_F(SimulateCommand, WrongInputWritesNothing) {
   EXPECT_EQ(run("air_table.toml", "--set schema=\\\"snare-scenario/1\\\""), 2);
   EXPECT_NE(contents("log.txt").find("is read no more"), std::string::npos) << contents("log.txt");
   EXPECT_EQ(run("jemrms_step.toml", "--set output.swings=\\\"elbow\\\""), 2);
-  EXPECT_NE(contents("log.txt").find("must be a joint with a motor"), std::string::npos) << contents("log.txt");
+  EXPECT_NE(contents("log.txt").find("must be a joint with a motor"), std::string::npos)
+      << contents("log.txt");
   EXPECT_EQ(run("none.toml", ""), 2);
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }

@@ -11,8 +11,9 @@ namespace snare::app {
 /// A folder with one.toml, a push of two points, and sweep.toml, 60 of them with other lengths and diameters.
 class SmallSweep : public CommandFixture {
  protected:
-  inline static const std::string push = "schema = \"snare-experiment/1\"\ntitle = \"push\"\nsource = \"a test\"\n" +
-                                         test::wire_tables("180.0") + R"([[series]]
+  inline static const std::string push =
+      "schema = \"snare-experiment/1\"\ntitle = \"push\"\nsource = \"a test\"\n" +
+      test::wire_tables("180.0") + R"([[series]]
 name = "middle"
 contact_position_mm = 87.5
 travel_mm = 0.5

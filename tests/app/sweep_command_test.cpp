@@ -105,7 +105,8 @@ TEST_F(SweepCommand, ACaseThatEndsTheProcessIsNotRunAgain) {
   ASSERT_EQ(run("sweep sweep.toml --out whole" + many), 0);
   // A signal from outside may come between two cases, and is then no case's fault: the next try goes on from there.
   std::string said;
-  for (int tries = 0; tries < 10 && said.find(" ended the process by SIGSEGV") == std::string::npos; ++tries) {
+  for (int tries = 0; tries < 10 && said.find(" ended the process by SIGSEGV") == std::string::npos;
+       ++tries) {
     const std::size_t enough = contents("a/cases.journal").size() + 2000;
     const pid_t child = start({"sweep", "sweep.toml", "--out", "a", "--threads", "1", "--set", "cases=600"});
     for (int k = 0; k < 400 && contents("a/cases.journal").size() < enough; ++k)
@@ -156,7 +157,9 @@ TEST_F(SweepCommand, TwoSweepsDoNotShareAFolder) {
 // A limit of the file's size stands for a disk that is full: the journal ends with a whole line, and the sweep goes on with room.
 TEST_F(SweepCommand, AFullDiskKeepsWhatIsFinished) {
   ASSERT_EQ(run("sweep sweep.toml --out whole --set cases=300"), 0);
-  EXPECT_EQ(shell("ulimit -f 8; '" SNARE_COMMAND "' sweep sweep.toml --out a --set cases=300 >out.txt 2>err.txt"), 1);
+  EXPECT_EQ(
+      shell("ulimit -f 8; '" SNARE_COMMAND "' sweep sweep.toml --out a --set cases=300 >out.txt 2>err.txt"),
+      1);
   EXPECT_THAT(contents("err.txt"), HasSubstr("a/cases.journal: cannot be written"));
   EXPECT_EQ(contents("a/cases.journal").back(), '\n');
   ASSERT_EQ(run("sweep sweep.toml --out a --set cases=300"), 0);
@@ -284,7 +287,8 @@ touching = "series[middle].in_contact_at_end"
   ASSERT_EQ(run("sweep refined.toml --out b --threads 3"), 0);
   EXPECT_EQ(cases("b"), cases("a"));
   for (int kills = 0; kills < 5; ++kills)
-    static_cast<void>(interrupt(start({"sweep", "refined.toml", "--out", "c", "--threads", "2"}), 0.06, SIGKILL));
+    static_cast<void>(
+        interrupt(start({"sweep", "refined.toml", "--out", "c", "--threads", "2"}), 0.06, SIGKILL));
   ASSERT_EQ(run("sweep refined.toml --out c"), 0) << contents("err.txt");
   EXPECT_EQ(cases("c"), cases("a"));
 
@@ -295,20 +299,22 @@ touching = "series[middle].in_contact_at_end"
 }
 
 TEST_F(SweepCommand, ARareEventByLevels) {
-  ASSERT_EQ(run("sweep sweep.toml --out a --set design=subset --set cases=100 --set vary[1].uniform=[179,181] "
-                "--set limits[1].above=40"),
-            0)
+  ASSERT_EQ(
+      run("sweep sweep.toml --out a --set design=subset --set cases=100 --set vary[1].uniform=[179,181] "
+          "--set limits[1].above=40"),
+      0)
       << contents("err.txt");
   const nlohmann::json failure = parsed("a/summary.json")["failure"];
   EXPECT_GT(failure["levels"].size(), 0U);
   EXPECT_GT(failure["probability"], 0.0);
   const std::string before = cases("a");
-  ASSERT_EQ(
-      run("sweep sweep.toml --out b --threads 1 --set design=subset --set cases=100 --set vary[1].uniform=[179,181] "
-          "--set limits[1].above=40"),
-      0);
+  ASSERT_EQ(run("sweep sweep.toml --out b --threads 1 --set design=subset --set cases=100 --set "
+                "vary[1].uniform=[179,181] "
+                "--set limits[1].above=40"),
+            0);
   EXPECT_EQ(cases("b"), before);
-  EXPECT_EQ(run("sweep sweep.toml --out a --case 3 --set design=subset --set cases=100 --set vary[1].uniform=[179,181] "
+  EXPECT_EQ(run("sweep sweep.toml --out a --case 3 --set design=subset --set cases=100 --set "
+                "vary[1].uniform=[179,181] "
                 "--set limits[1].above=40"),
             0);
 }
@@ -333,7 +339,8 @@ TEST_F(SlowSweep, AHundredKillsLoseNothing) {
   std::set<std::string> numbers;
   std::string line;
   std::getline(journal, line);
-  while (std::getline(journal, line)) EXPECT_TRUE(numbers.insert(line.substr(0, line.find(' '))).second) << line;
+  while (std::getline(journal, line))
+    EXPECT_TRUE(numbers.insert(line.substr(0, line.find(' '))).second) << line;
   EXPECT_EQ(numbers.size(), 20000U);
 }
 

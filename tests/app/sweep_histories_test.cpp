@@ -27,7 +27,8 @@ columns = ["displacement_mm", "force_N", "series"]
   /// Names in the folder of a sweep.
   [[nodiscard]] std::set<std::string> names(const std::string& out) const {
     std::set<std::string> all;
-    for (const auto& entry : std::filesystem::directory_iterator(path(out))) all.insert(entry.path().filename());
+    for (const auto& entry : std::filesystem::directory_iterator(path(out)))
+      all.insert(entry.path().filename());
     return all;
   }
 };
@@ -40,8 +41,8 @@ TEST_F(SweepHistories, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(parsed("a/summary.json")["histories"], "histories.h5");
   ASSERT_EQ(histories("a").substr(513, 3), "HDF");
   EXPECT_EQ(histories("a"), histories("b"));
-  EXPECT_EQ(names("a"),
-            (std::set<std::string>{"cases.csv", "cases.journal", "histories.h5", "report.html", "summary.json"}));
+  EXPECT_EQ(names("a"), (std::set<std::string>{"cases.csv", "cases.journal", "histories.h5", "report.html",
+                                               "summary.json"}));
   // Once more: nothing is run and nothing written anew.
   const auto written = std::filesystem::last_write_time(path("a/histories.h5"));
   ASSERT_EQ(run("sweep sweep.toml --out a"), 0);
@@ -120,7 +121,9 @@ TEST_F(SweepHistories, AFullDiskKeepsWhatIsFinished) {
   constexpr std::size_t limit = 1200 * 512;  // in the shell's blocks; all other files are smaller
   ASSERT_GT(histories("whole").size(), limit);
   ASSERT_LT(contents("whole/report.html").size(), limit);
-  EXPECT_EQ(shell("ulimit -f 1200; '" SNARE_COMMAND "' sweep sweep.toml --out a" + many + " >out.txt 2>err.txt"), 1);
+  EXPECT_EQ(
+      shell("ulimit -f 1200; '" SNARE_COMMAND "' sweep sweep.toml --out a" + many + " >out.txt 2>err.txt"),
+      1);
   EXPECT_THAT(contents("err.txt"), HasSubstr("a/histories.h5: cannot be written: File too large"));
   EXPECT_FALSE(exists("a/histories.h5"));
   EXPECT_FALSE(names("a/histories").empty());

@@ -75,7 +75,8 @@ TEST_F(TraceCommand, WritesTheFieldsThatOthersRelyOn) {
   EXPECT_TRUE(t["residual"]["significant"].get<bool>());
   ASSERT_GE(t["candidates"].size(), 15u);
   for (const json& c : t["candidates"]) {
-    for (const char* key : {"effect", "channel", "score_p", "rmse_N", "delta_bic", "value", "plausible", "class"}) {
+    for (const char* key :
+         {"effect", "channel", "score_p", "rmse_N", "delta_bic", "value", "plausible", "class"}) {
       EXPECT_TRUE(c.contains(key)) << key;
     }
     EXPECT_LT(c["class"].get<std::size_t>(), t["classes"].size());

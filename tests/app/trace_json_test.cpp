@@ -25,7 +25,8 @@ TEST(TraceJson, HasTheNumbersOfTheTrace) {
   EXPECT_EQ(t["series"][0]["displacement_mm"], json({0.0, 1.0, 2.0}));
   EXPECT_EQ(t["series"][0]["final_N"], json({0.0, 0.7, 2.8}));
   // Law minus final model at 0, 1, 2 mm: 0.0533, 0.059602, 0.105664.
-  EXPECT_NEAR(t["series"][0]["law"]["final_rmse_N"].get<double>(), 0.0765, 5e-5) << "last digit of the number above";
+  EXPECT_NEAR(t["series"][0]["law"]["final_rmse_N"].get<double>(), 0.0765, 5e-5)
+      << "last digit of the number above";
   EXPECT_FALSE(t["series"][1].contains("law"));
   EXPECT_EQ(t["decided"], true);
   EXPECT_EQ(t["verdict_kind"], "explained");
@@ -40,7 +41,8 @@ TEST(TraceJson, TellsWhereThePusherStood) {
   const json places = trace_json(traced_experiment(), trace)["places"];
   EXPECT_EQ(
       places,
-      json::array({{{"series", {"s40", "s40b"}}, {"sigma_mm", 0.02}, {"shift_mm", -0.015}, {"stderr_mm", 0.004}}}));
+      json::array(
+          {{{"series", {"s40", "s40b"}}, {"sigma_mm", 0.02}, {"shift_mm", -0.015}, {"stderr_mm", 0.004}}}));
 }
 
 TEST(TraceJson, WritesNullForWhatIsNotKnown) {

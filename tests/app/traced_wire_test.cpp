@@ -28,8 +28,10 @@ Reproduction traced_reproduction(VerdictKind kind) {
   trace.final.numbers = {{"wire.axial_stiffness_N", "N", 341060.0, 17721.0, 700.0, {}, {}, false},
                          {"wire.length_mm", "mm", 180.0, 175.5, {}, {}, {}, false}};
   const identification::Parameter* axial = identification::parameters().find("wire.axial_stiffness_N");
-  const identification::Parameter* offset = identification::parameters().find("reading.displacement_offset_mm");
-  trace.final_settings = {{axial, axial->coordinate(341060.0, 17721.0)}, {offset, offset->coordinate(0.0, 0.5e-3)}};
+  const identification::Parameter* offset =
+      identification::parameters().find("reading.displacement_offset_mm");
+  trace.final_settings = {{axial, axial->coordinate(341060.0, 17721.0)},
+                          {offset, offset->coordinate(0.0, 0.5e-3)}};
   result.trace = trace;
   return result;
 }
@@ -53,7 +55,8 @@ TEST(TracedWire, IsAWireFileOfTheFinalModel) {
 }
 
 TEST(TracedWire, CommentsStateWhatWasTraced) {
-  const std::string text = traced_wire_toml(traced_reproduction(VerdictKind::explained), "snare reproduce test.toml");
+  const std::string text =
+      traced_wire_toml(traced_reproduction(VerdictKind::explained), "snare reproduce test.toml");
   for (const char* line :
        {"written by `snare reproduce test.toml`", "# Declared in test.toml.\n", "# Verdict: explained. ",
         "#   wire.axial_stiffness_N = 17721 +- 7e+02 N (declared: 341060)\n",
@@ -67,14 +70,16 @@ TEST(TracedWire, SaysWhereNoModelIsAccepted) {
   for (const VerdictKind kind : {VerdictKind::not_explained, VerdictKind::cannot_tell}) {
     const std::string text = traced_wire_toml(traced_reproduction(kind), "snare reproduce");
     EXPECT_NE(text.find("# No model was accepted: do not rely on these numbers."), std::string::npos) << text;
-    EXPECT_NE(reduction::parse_wire_file("x.toml", text).title.find(", do not rely on it"), std::string::npos) << text;
+    EXPECT_NE(reduction::parse_wire_file("x.toml", text).title.find(", do not rely on it"), std::string::npos)
+        << text;
   }
 }
 
 TEST(TracedWire, TitlesWithQuotesAndLineBreaksStayReadable) {
   Reproduction result = traced_reproduction(VerdictKind::explained);
   result.experiment.title = "a \"quoted\\\" title\n[wire]\nlength_mm = 1.0";
-  const reduction::WireFile file = reduction::parse_wire_file("x.toml", traced_wire_toml(result, "snare reproduce"));
+  const reduction::WireFile file =
+      reduction::parse_wire_file("x.toml", traced_wire_toml(result, "snare reproduce"));
   EXPECT_EQ(file.cases.front().test.wire.length, 0.180);
 }
 

@@ -13,7 +13,8 @@ class Warnings : public CommandFixture {
   [[nodiscard]] std::string experiment(const std::string& more_of_wire, const std::string& more = "") const {
     return "schema = \"snare-experiment/1\"\ntitle = \"test\"\nsource = \"none\"\n" +
            test::wire_tables("176.0", more_of_wire) +
-           "[solver]\nelements = 32\n[[series]]\nname = \"s\"\ncontact_position_mm = 60.0\ntravel_mm = 1.0\npoints = "
+           "[solver]\nelements = 32\n[[series]]\nname = \"s\"\ncontact_position_mm = 60.0\ntravel_mm = "
+           "1.0\npoints = "
            "5\n" +
            more;
   }
@@ -40,14 +41,16 @@ TEST_F(Warnings, APushOfWhatCannotBe) {
   expect_said("--set bulge.mode=2 --set wire.length_mm=180",
               "series s: the wire leaves the pusher after a travel of 0 mm");
   expect_said(
-      "--set pusher.direction='\"inward\"' --set series[s].contact_position_mm=87.5 --set series[s].travel_mm=6",
+      "--set pusher.direction='\"inward\"' --set series[s].contact_position_mm=87.5 --set "
+      "series[s].travel_mm=6",
       "series s: the curve runs along an unstable branch from a travel of ");
 }
 
 // One sentence for all series, of the one with the largest stress.
 TEST_F(Warnings, AStressInSeveralSeries) {
-  write("x.toml",
-        experiment("", "[[series]]\nname = \"t\"\ncontact_position_mm = 40.0\ntravel_mm = 20.0\npoints = 5\n"));
+  write(
+      "x.toml",
+      experiment("", "[[series]]\nname = \"t\"\ncontact_position_mm = 40.0\ntravel_mm = 20.0\npoints = 5\n"));
   ASSERT_EQ(run("push x.toml --out here --json --set series[s].travel_mm=20"), 0) << contents("err.txt");
   const std::string said = contents("err.txt");
   const std::size_t at = said.find("the stress in the wire reaches ");
@@ -80,9 +83,11 @@ TEST_F(Warnings, AWithdrawnPusherIsNone) {
 // A fitted stiffness that no wire has, on the page, too.
 TEST_F(Warnings, AFitOfWhatCannotBe) {
   std::string csv = "displacement_mm,force_N\n";
-  for (int i = 0; i <= 20; ++i) csv += std::to_string(0.05 * i) + "," + std::to_string(4.0 * i + 2.0 * i * i) + "\n";
+  for (int i = 0; i <= 20; ++i)
+    csv += std::to_string(0.05 * i) + "," + std::to_string(4.0 * i + 2.0 * i * i) + "\n";
   write("r.csv", csv);
-  write("x.toml", experiment("bending_stiffness_Nm2 = 0.048\n") + "[fit]\nfree = [\"wire.bending_stiffness_Nm2\"]\n");
+  write("x.toml",
+        experiment("bending_stiffness_Nm2 = 0.048\n") + "[fit]\nfree = [\"wire.bending_stiffness_Nm2\"]\n");
   std::string text = contents("x.toml");
   text.replace(text.find("travel_mm = 1.0\npoints = 5"), 26, "file = \"r.csv\"");
   write("x.toml", text);
@@ -111,11 +116,13 @@ rotational_stiffness_Nm_rad = 10.0
 )");
   ASSERT_EQ(run("simulate x.toml --out here"), 0) << contents("err.txt");
   EXPECT_TRUE(parsed("here/summary.json")["warnings"].empty()) << contents("here/summary.json");
-  ASSERT_EQ(run("simulate x.toml --out there --set solver.max_order=1 --set solver.body_position_tolerance_m=1e-4 "
-                "--set solver.body_velocity_tolerance_m_s=1e-2"),
-            0)
+  ASSERT_EQ(
+      run("simulate x.toml --out there --set solver.max_order=1 --set solver.body_position_tolerance_m=1e-4 "
+          "--set solver.body_velocity_tolerance_m_s=1e-2"),
+      0)
       << contents("err.txt");
-  EXPECT_NE(contents("err.txt").find("warning: the integrator lost "), std::string::npos) << contents("err.txt");
+  EXPECT_NE(contents("err.txt").find("warning: the integrator lost "), std::string::npos)
+      << contents("err.txt");
   EXPECT_EQ(parsed("there/summary.json")["warnings"].size(), 1U);
 }
 

@@ -28,15 +28,16 @@ const std::vector<CsvColumn> columns{
 
 // A record may give one column to two sensors, or choose its rows by a column that it reads.
 TEST(Csv, AColumnMayBeAskedForSeveralTimes) {
-  const CsvTable table = parse_csv("m.csv", "b,a\n1,2\n3,4\n",
-                                   {{"a"}, {"b"}, {"a", CsvColumn::Presence::required, Range::finite(), 1e-3}, {"a"}});
+  const CsvTable table =
+      parse_csv("m.csv", "b,a\n1,2\n3,4\n",
+                {{"a"}, {"b"}, {"a", CsvColumn::Presence::required, Range::finite(), 1e-3}, {"a"}});
   EXPECT_EQ(table.columns[0], (std::vector<double>{2.0, 4.0}));
   EXPECT_EQ(table.columns[1], (std::vector<double>{1.0, 3.0}));
   EXPECT_EQ(table.columns[2], (std::vector<double>{0.002, 0.004}));
   EXPECT_EQ(table.columns[3], table.columns[0]);
   EXPECT_EQ(test::refusal([] {
-              static_cast<void>(
-                  parse_csv("m.csv", "a\n-1\n", {{"a"}, {"a", CsvColumn::Presence::required, Range::above(0.0)}}));
+              static_cast<void>(parse_csv("m.csv", "a\n-1\n",
+                                          {{"a"}, {"a", CsvColumn::Presence::required, Range::above(0.0)}}));
             }),
             "m.csv:2: a = -1, must be > 0");
 }
@@ -77,15 +78,19 @@ INSTANTIATE_TEST_SUITE_P(
         Accepted{"byte order mark",
                  "\xEF\xBB\xBF"
                  "displacement_mm,force_N\n0.1,-0.5\n180,2500\n"},
-        Accepted{"byte order mark, CRLF", "\xEF\xBB\xBF# a\r\ndisplacement_mm,force_N\r\n0.1,-0.5\r\n180,2500\r\n"},
-        Accepted{"comments anywhere", "# a\n  # b, c\ndisplacement_mm,force_N # d\n#\n0.1,-0.5#e\n180,2500\n# f"},
-        Accepted{"a comment in UTF-8",
-                 "# 0,1 \xC2\xB5m \xE5\x8A\x9B \xF0\x9F\x94\xA9\ndisplacement_mm,force_N\n0.1,-0.5\n180,2500\n"},
+        Accepted{"byte order mark, CRLF",
+                 "\xEF\xBB\xBF# a\r\ndisplacement_mm,force_N\r\n0.1,-0.5\r\n180,2500\r\n"},
+        Accepted{"comments anywhere",
+                 "# a\n  # b, c\ndisplacement_mm,force_N # d\n#\n0.1,-0.5#e\n180,2500\n# f"},
+        Accepted{
+            "a comment in UTF-8",
+            "# 0,1 \xC2\xB5m \xE5\x8A\x9B \xF0\x9F\x94\xA9\ndisplacement_mm,force_N\n0.1,-0.5\n180,2500\n"},
         Accepted{"blank lines", "\n\ndisplacement_mm,force_N\n\n0.1,-0.5\n   \n180,2500\n\n"},
         Accepted{"blanks around cells", " displacement_mm ,\tforce_N\n 0.1 , -0.5\n180 ,2500  \n"},
         Accepted{"other order", "force_N,displacement_mm\n-0.5,0.1\n2500,180\n"},
         Accepted{"other columns", "id,displacement_mm,note,force_N\na,0.1,nan,-0.5\n,180,,2500\n"},
-        Accepted{"quotes", "\"displacement_mm\",\"force_N\",\"a, # b\"\n0.1,-0.5,\"c, d\"\n\"180\",2500,# e\n"},
+        Accepted{"quotes",
+                 "\"displacement_mm\",\"force_N\",\"a, # b\"\n0.1,-0.5,\"c, d\"\n\"180\",2500,# e\n"},
         Accepted{"semicolons and decimal commas", "displacement_mm;force_N\n0,1;-0,5\n180;2500,0\n"},
         Accepted{"decimal commas in quotes", "displacement_mm,force_N\n\"0,1\",\"-0,5\"\n\"180\",\"2500\"\n"},
         Accepted{"tabs", "displacement_mm\tforce_N\n0.1\t-0.5\n180\t2500\n"},
@@ -103,7 +108,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Csv, OptionalColumnIsEmptyWhenAbsentAndReadWhenPresent) {
   EXPECT_TRUE(parse_csv("m.csv", "displacement_mm,force_N\n1,2\n", columns).columns[2].empty());
-  const CsvTable table = parse_csv("m.csv", "time_s,displacement_mm,force_N\n0,1,2\n0,2,3\n0.5,1,2\n", columns);
+  const CsvTable table =
+      parse_csv("m.csv", "time_s,displacement_mm,force_N\n0,1,2\n0,2,3\n0.5,1,2\n", columns);
   EXPECT_EQ(table.columns[2], (std::vector<double>{0.0, 0.0, 0.5}));
 }
 
@@ -122,13 +128,15 @@ INSTANTIATE_TEST_SUITE_P(
     Table, WrongCsv,
     testing::Values(
         Wrong{"", "m.csv: is empty, must have a header that names the columns"},
-        Wrong{"\xEF\xBB\xBF\n# only a comment\n\n", "m.csv: is empty, must have a header that names the columns"},
+        Wrong{"\xEF\xBB\xBF\n# only a comment\n\n",
+              "m.csv: is empty, must have a header that names the columns"},
         Wrong{"displacement_mm,force_N\n", "m.csv: has a header but no rows"},
-        Wrong{
-            "# a\ndisplacement_mm,force\n1,2\n",
-            "m.csv:2: force_N, no such column; the file has \"displacement_mm\", \"force\"; the nearest is \"force\""},
+        Wrong{"# a\ndisplacement_mm,force\n1,2\n",
+              "m.csv:2: force_N, no such column; the file has \"displacement_mm\", \"force\"; the nearest is "
+              "\"force\""},
         Wrong{"1.0,2.0\n3.0,4.0\n",
-              "m.csv:1: displacement_mm, no such column; the first line that is not a comment must name the columns\n"
+              "m.csv:1: displacement_mm, no such column; the first line that is not a comment must name the "
+              "columns\n"
               "m.csv:1: force_N, no such column; the first line that is not a comment must name the columns"},
         Wrong{"displacement_mm,force_N,force_N\n1,2,3\n", "m.csv:1: force_N, the column is there twice"},
         Wrong{"displacement_mm,force_N\n1,2\n1,two\n", "m.csv:3: force_N = two, must be a number"},
@@ -140,26 +148,31 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"displacement_mm,force_N\n1,nan\n", "m.csv:2: force_N = nan, must be a finite number"},
         Wrong{"displacement_mm,force_N\n1,-inf\n", "m.csv:2: force_N = -inf, must be a finite number"},
         Wrong{"displacement_mm,force_N\n1,1e999\n", "m.csv:2: force_N = 1e999, must be a finite number"},
-        Wrong{"displacement_mm,force_N\n1000.5,1\n", "m.csv:2: displacement_mm = 1000.5, must be >= -1000 and <= 1000"},
+        Wrong{"displacement_mm,force_N\n1000.5,1\n",
+              "m.csv:2: displacement_mm = 1000.5, must be >= -1000 and <= 1000"},
         Wrong{"displacement_mm,force_N\n1,2\n1\n", "m.csv:3: the row has 1 cells, must have 2 as the header"},
-        Wrong{"displacement_mm,force_N\n0,1,2,3\n", "m.csv:2: the row has 4 cells, must have 2 as the header"},
-        Wrong{"displacement_mm,force_N\n0,1,two\n", "m.csv:2: the row has 3 cells, must have 2 as the header"},
+        Wrong{"displacement_mm,force_N\n0,1,2,3\n",
+              "m.csv:2: the row has 4 cells, must have 2 as the header"},
+        Wrong{"displacement_mm,force_N\n0,1,two\n",
+              "m.csv:2: the row has 3 cells, must have 2 as the header"},
         Wrong{"displacement_mm;force_N\n1,234;2,500\n9,123;7,100\n",
-              "m.csv:2: displacement_mm = 1,234, may have its comma before decimals or between thousands: must have a "
+              "m.csv:2: displacement_mm = 1,234, may have its comma before decimals or between thousands: "
+              "must have a "
               "decimal "
               "point"},
         Wrong{"displacement_mm;force_N\n0,5;2.5\n",
               "m.csv:2: force_N = 2.5, has a point, numbers before it a decimal comma: must have a comma"},
-        Wrong{
-            "displacement_mm,force_N\n0.5,\"2,5\"\n",
-            "m.csv:2: force_N = 2,5, has a comma, numbers before it a decimal point: must have a decimal point and no "
-            "other separator"},
+        Wrong{"displacement_mm,force_N\n0.5,\"2,5\"\n",
+              "m.csv:2: force_N = 2,5, has a comma, numbers before it a decimal point: must have a decimal "
+              "point and no "
+              "other separator"},
         Wrong{"displacement_mm,force_N\n0.5,\"2,410.0\"\n",
               "m.csv:2: force_N = 2,410.0, must be a number without separators between thousands"},
         Wrong{"displacement_mm,force_N,time_s\n1,2,0.5\n1,2,0.4\n",
               "m.csv:3: time_s = 0.4, must be >= 0.5, the value of the row before"},
         Wrong{"displacement_mm,force_N\n1,\xFF\n", "m.csv:2: byte 0xff is not UTF-8: save the file as UTF-8"},
-        Wrong{"displacement_mm,force_N\n1,2 # \xC3(\n", "m.csv:2: byte 0xc3 is not UTF-8: save the file as UTF-8"},
+        Wrong{"displacement_mm,force_N\n1,2 # \xC3(\n",
+              "m.csv:2: byte 0xc3 is not UTF-8: save the file as UTF-8"},
         Wrong{std::string("\xFF\xFE"
                           "d\0i\0s\0\n\0",
                           10),
@@ -184,7 +197,8 @@ std::vector<CsvColumn> renamed(const std::string& displacement, const std::strin
 
 TEST(Csv, ExportsOfMachinesAreReadByTheirNames) {
   const std::string bluehill =
-      "\"Results Table 1\"\n\"Time\",\"Extension\",\"Load\"\n\"(s)\",\"(mm)\",\"(kN)\"\n\"0.0\",\"0.3\",\"0.0241\"\n";
+      "\"Results Table "
+      "1\"\n\"Time\",\"Extension\",\"Load\"\n\"(s)\",\"(mm)\",\"(kN)\"\n\"0.0\",\"0.3\",\"0.0241\"\n";
   const CsvTable table = parse_csv("m.csv", bluehill, renamed("Extension", "Load", 1000.0));
   EXPECT_EQ(table.columns[0], std::vector<double>{0.3});
   EXPECT_DOUBLE_EQ(table.columns[1][0], 24.1);
@@ -196,15 +210,19 @@ TEST(Csv, ExportsOfMachinesAreReadByTheirNames) {
             "m.csv:3: Load, is in kN, must be in a unit like that of displacement_mm");
   EXPECT_EQ(
       test::refusal([&] { return parse_csv("m.csv", bluehill, renamed("displacement_mm", "force_N", 1.0)); }),
-      "m.csv:2: displacement_mm, no such column; the file has \"Time\", \"Extension\", \"Load\"; the nearest is "
+      "m.csv:2: displacement_mm, no such column; the file has \"Time\", \"Extension\", \"Load\"; the nearest "
+      "is "
       "\"Extension\"\n"
-      "m.csv:2: force_N, no such column; the file has \"Time\", \"Extension\", \"Load\"; the nearest is \"Load\"; "
+      "m.csv:2: force_N, no such column; the file has \"Time\", \"Extension\", \"Load\"; the nearest is "
+      "\"Load\"; "
       "if so, write columns = { \"Extension\" = \"displacement_mm\", \"Load\" = \"force_N\" } and "
       "scale = { \"Load\" = 1000 }");
   EXPECT_EQ(test::refusal([&] {
-              return parse_csv("m.csv", "displacement_m,Force_N\n1,2\n", renamed("displacement_mm", "force_N", 1.0));
+              return parse_csv("m.csv", "displacement_m,Force_N\n1,2\n",
+                               renamed("displacement_mm", "force_N", 1.0));
             }),
-            "m.csv:1: displacement_mm, no such column; the file has \"displacement_m\", \"Force_N\"; the nearest is "
+            "m.csv:1: displacement_mm, no such column; the file has \"displacement_m\", \"Force_N\"; the "
+            "nearest is "
             "\"displacement_m\"\n"
             "m.csv:1: force_N, no such column; the file has \"displacement_m\", \"Force_N\"; the nearest is "
             "\"Force_N\"; if so, write columns = { \"displacement_m\" = \"displacement_mm\", "
@@ -229,7 +247,8 @@ TEST_F(CsvFiles, FileThatCannotBeReadHasItsMessage) {
   EXPECT_EQ(message_of("folder.csv"), path("folder.csv") + ": is a directory, must be a file");
   EXPECT_EQ(message_of("none/a.csv"), path("none/a.csv") + ": no such file");
   ASSERT_EQ(::mkfifo(path("pipe.csv").c_str(), 0600), 0);
-  EXPECT_EQ(message_of("pipe.csv"), path("pipe.csv") + ": is a device, a pipe or a socket, must be a regular file");
+  EXPECT_EQ(message_of("pipe.csv"),
+            path("pipe.csv") + ": is a device, a pipe or a socket, must be a regular file");
 }
 
 TEST_F(CsvFiles, UnreadableFileHasItsMessage) {
@@ -267,8 +286,13 @@ TEST_F(CsvFiles, LineWithoutEndIsRefusedAndNotHeldInMemory) {
 TEST_F(CsvFiles, WriterRoundTripsExactly) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> exponent(-300.0, 300.0);
-  std::vector<double> values{
-      0.0, -0.0, 0.1, 1.0 / 3.0, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max(), -1e22};
+  std::vector<double> values{0.0,
+                             -0.0,
+                             0.1,
+                             1.0 / 3.0,
+                             std::numeric_limits<double>::denorm_min(),
+                             std::numeric_limits<double>::max(),
+                             -1e22};
   for (int i = 0; i < 1000; ++i) values.push_back(std::pow(10.0, exponent(random)));
   CsvWriter writer(path("a.csv"), {"series", "force_N", "iterations", "measured_N"}, {"unit: N"});
   for (const double value : values) writer.row({"s,4\"0", value, 3LL, std::monostate{}});

@@ -15,7 +15,8 @@ TEST(Decimal, DifferencesOfDecimalNumbersAreTheDecimalOnes) {
   int differ = 0;
   for (int k = 0; k < 10'000; ++k) {
     const int span = hundredths(random), slack = hundredths(random);
-    const double length_m = (span + slack) / 100'000.0, span_m = span / 100'000.0, slack_m = slack / 100'000.0;
+    const double length_m = (span + slack) / 100'000.0, span_m = span / 100'000.0,
+                 slack_m = slack / 100'000.0;
     const double derived = length_m - span_m;
     differ += derived == slack_m ? 0 : 1;
     EXPECT_FALSE(exceeds(derived, slack_m, {length_m, span_m}));

@@ -9,18 +9,23 @@ namespace snare::base {
 namespace {
 
 TEST(InputProblem, MessageNamesFileLineKeyValueAndRequirement) {
-  const InputProblem problem{
-      .file = "data/x.toml", .line = 12, .key = "wire.diameter_mm", .value = "-1.5", .requirement = "must be > 0"};
+  const InputProblem problem{.file = "data/x.toml",
+                             .line = 12,
+                             .key = "wire.diameter_mm",
+                             .value = "-1.5",
+                             .requirement = "must be > 0"};
   EXPECT_EQ(problem.message(), "data/x.toml:12: wire.diameter_mm = -1.5, must be > 0");
 }
 
 TEST(InputProblem, UnknownLineIsLeftOut) {
-  const InputProblem problem{.file = "x.toml", .line = 0, .key = "wire", .value = "", .requirement = "is missing"};
+  const InputProblem problem{
+      .file = "x.toml", .line = 0, .key = "wire", .value = "", .requirement = "is missing"};
   EXPECT_EQ(problem.message(), "x.toml: wire, is missing");
 }
 
 TEST(InputProblem, ProblemOfAWholeFileHasNoKey) {
-  const InputProblem problem{.file = "x.toml", .line = 0, .key = "", .value = "", .requirement = "is a directory"};
+  const InputProblem problem{
+      .file = "x.toml", .line = 0, .key = "", .value = "", .requirement = "is a directory"};
   EXPECT_EQ(problem.message(), "x.toml: is a directory");
 }
 

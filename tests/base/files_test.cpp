@@ -19,7 +19,9 @@ namespace {
 
 class Files : public test::FolderFixture {
  protected:
-  [[nodiscard]] auto entries() const { return std::distance(std::filesystem::directory_iterator(folder_), {}); }
+  [[nodiscard]] auto entries() const {
+    return std::distance(std::filesystem::directory_iterator(folder_), {});
+  }
 };
 
 TEST_F(Files, TextIsWrittenWithItsFoldersAndReadBack) {
@@ -85,14 +87,14 @@ TEST(Utf8, FindsTheFirstByteThatIsNotWellFormed) {
   EXPECT_EQ(find_invalid_utf8(""), none);
   EXPECT_EQ(find_invalid_utf8("a\xC2\xB5\xE5\x8A\x9B\xF0\x9F\x94\xA9\x7F"), none);
   EXPECT_EQ(find_invalid_utf8("\xED\x9F\xBF\xEE\x80\x80\xF4\x8F\xBF\xBF"), none);  // ends of the ranges
-  EXPECT_EQ(find_invalid_utf8("ab\x80"), 2u);                                      // continuation without a start
-  EXPECT_EQ(find_invalid_utf8("a\xC2"), 1u);                                       // cut short
-  EXPECT_EQ(find_invalid_utf8("\xE5\x8A"), 0u);                                    //
-  EXPECT_EQ(find_invalid_utf8("\xC0\xAF"), 0u);                                    // overlong
-  EXPECT_EQ(find_invalid_utf8("\xE0\x9F\xBF"), 0u);                                // overlong
-  EXPECT_EQ(find_invalid_utf8("\xF0\x8F\xBF\xBF"), 0u);                            // overlong
-  EXPECT_EQ(find_invalid_utf8("\xED\xA0\x80"), 0u);                                // surrogate
-  EXPECT_EQ(find_invalid_utf8("\xF4\x90\x80\x80"), 0u);                            // beyond U+10FFFF
+  EXPECT_EQ(find_invalid_utf8("ab\x80"), 2u);            // continuation without a start
+  EXPECT_EQ(find_invalid_utf8("a\xC2"), 1u);             // cut short
+  EXPECT_EQ(find_invalid_utf8("\xE5\x8A"), 0u);          //
+  EXPECT_EQ(find_invalid_utf8("\xC0\xAF"), 0u);          // overlong
+  EXPECT_EQ(find_invalid_utf8("\xE0\x9F\xBF"), 0u);      // overlong
+  EXPECT_EQ(find_invalid_utf8("\xF0\x8F\xBF\xBF"), 0u);  // overlong
+  EXPECT_EQ(find_invalid_utf8("\xED\xA0\x80"), 0u);      // surrogate
+  EXPECT_EQ(find_invalid_utf8("\xF4\x90\x80\x80"), 0u);  // beyond U+10FFFF
   EXPECT_EQ(find_invalid_utf8("\xFF"), 0u);
 }
 
@@ -102,7 +104,8 @@ TEST(Sha256, KnownDigests) {
   EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
             "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
-  EXPECT_EQ(sha256(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  EXPECT_EQ(sha256(std::string(1000000, 'a')),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
 TEST_F(Files, AreReadOnceInAScope) {

@@ -70,7 +70,8 @@ TEST(InUnit, ComputedNumbersKeepTheirDigits) {
     const double x = std::pow(10.0, size(engine));
     for (const double unit : {mm, degree}) {
       const double shown = in_unit(x, unit);
-      const long double exact = static_cast<long double>(x) / (unit == mm ? 1e-3L : static_cast<long double>(degree));
+      const long double exact =
+          static_cast<long double>(x) / (unit == mm ? 1e-3L : static_cast<long double>(degree));
       ASSERT_LE(std::abs(static_cast<double>((shown - exact) / exact)), 2.0 * epsilon) << x;
       char text[40];
       std::snprintf(text, sizeof text, "%.14e", shown);

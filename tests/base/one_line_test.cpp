@@ -37,8 +37,8 @@ TEST(OneLine, MakesWhatActsVisible) {
 
 // What a shell makes of the word, for every byte but 0 that a file name can have.
 TEST(OneLine, AShellReadsTheWordBack) {
-  for (const std::string text :
-       {"wire.toml", "", "it's", "a b;rm -rf $HOME `x` \"y\" \\ * ? ~ #", "-n", "a\nb\tc", "set[s40].x=\"1\""}) {
+  for (const std::string text : {"wire.toml", "", "it's", "a b;rm -rf $HOME `x` \"y\" \\ * ? ~ #", "-n",
+                                 "a\nb\tc", "set[s40].x=\"1\""}) {
     const std::string command = "printf %s. " + shell_word(text);
     std::FILE* pipe = popen(command.c_str(), "r");
     ASSERT_NE(pipe, nullptr);

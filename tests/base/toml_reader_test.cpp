@@ -26,7 +26,8 @@ constexpr Choice<Colour> colours[] = {{"red", Colour::red}, {"green", Colour::gr
 using Read = std::function<void(TomlDocument&)>;
 
 /// What finish() says after `read` has asked its questions.
-std::string message_of(const std::string& text, const Read& read, const std::vector<Override>& overrides = {}) {
+std::string message_of(const std::string& text, const Read& read,
+                       const std::vector<Override>& overrides = {}) {
   try {
     TomlDocument document("a.toml", text, overrides);
     read(document);
@@ -90,18 +91,19 @@ TEST(TomlReader, EveryProblemIsListedByLine) {
     document.add({"other.csv", 3, "", "", "is odd"});
     document.add({"other.csv", 3, "", "", "is odd"});
   };
-  EXPECT_EQ(message_of("t = 1\nn = 10\nc = \"blue\"\nlist = [1, '2']\nodd = {a = 1}\n[b]\nx = -5_0\n[table.more]\n",
-                       read, {{"extra", "1"}}),
-            "a.toml: missing, missing, must be a number >= -1\n"
-            "a.toml:1: t = 1, must be a text in quotes\n"
-            "a.toml:2: n = 10, must be an integer >= 1 and <= 9\n"
-            "a.toml:3: c = \"blue\", must be \"red\" or \"green\"\n"
-            "a.toml:4: list[2] = '2', must be a number\n"
-            "a.toml:5: odd = {a = 1}, unknown key; known here: b, c, list, missing, n, t\n"
-            "a.toml:7: b.x = -5_0, must be > 0 and <= 2\n"
-            "a.toml:8: table, unknown key; known here: b, c, list, missing, n, t\n"
-            "--set: extra = 1, unknown key; known here: b, c, list, missing, n, t\n"
-            "other.csv:3: is odd");
+  EXPECT_EQ(
+      message_of("t = 1\nn = 10\nc = \"blue\"\nlist = [1, '2']\nodd = {a = 1}\n[b]\nx = -5_0\n[table.more]\n",
+                 read, {{"extra", "1"}}),
+      "a.toml: missing, missing, must be a number >= -1\n"
+      "a.toml:1: t = 1, must be a text in quotes\n"
+      "a.toml:2: n = 10, must be an integer >= 1 and <= 9\n"
+      "a.toml:3: c = \"blue\", must be \"red\" or \"green\"\n"
+      "a.toml:4: list[2] = '2', must be a number\n"
+      "a.toml:5: odd = {a = 1}, unknown key; known here: b, c, list, missing, n, t\n"
+      "a.toml:7: b.x = -5_0, must be > 0 and <= 2\n"
+      "a.toml:8: table, unknown key; known here: b, c, list, missing, n, t\n"
+      "--set: extra = 1, unknown key; known here: b, c, list, missing, n, t\n"
+      "other.csv:3: is odd");
 }
 
 TEST(TomlReader, NumbersThatAreNotFiniteAreRefused) {
@@ -120,7 +122,8 @@ TEST(TomlReader, LongAndMultiLineValuesAreShortened) {
     static_cast<void>(document.root().number("b", Range::finite()));
   };
   EXPECT_EQ(message_of("a = '" + std::string(100, '.') + "'\nb = [1,\n2]\n", read),
-            "a.toml:1: a = '" + std::string(59, '.') + "..., must be a number\na.toml:2: b = [1,..., must be a number");
+            "a.toml:1: a = '" + std::string(59, '.') +
+                "..., must be a number\na.toml:2: b = [1,..., must be a number");
 }
 
 TEST(TomlReader, UnknownKeysNameTheNearestKnownOne) {
@@ -228,7 +231,8 @@ TEST(TomlOverride, WhatCannotBeDoneIsReported) {
   const std::string text = "a = 1\n[[series]]\nname = 's40'\n[[series]]\n";
   const Read read = [](TomlDocument& document) {
     static_cast<void>(document.root().number("a", Range::above(0.0)));
-    for (const TomlTable& series : document.root().tables("series")) static_cast<void>(series.text_or("name", ""));
+    for (const TomlTable& series : document.root().tables("series"))
+      static_cast<void>(series.text_or("name", ""));
   };
   const auto message = [&](const char* key, const std::string& value) {
     return message_of(text, read, {{key, value}});
@@ -239,18 +243,22 @@ TEST(TomlOverride, WhatCannotBeDoneIsReported) {
   EXPECT_EQ(message("a", "5 mm"), "--set: a = 5 mm, must be a number > 0");
   EXPECT_EQ(message("a", "[1"), "--set: a = [1, the value must be a TOML literal or a bare word");
   EXPECT_EQ(message("a", "\"x"), "--set: a = \"x, the value must be a TOML literal or a bare word");
-  EXPECT_EQ(message("a", "1\nb = 2"), R"(--set: a = 1\x0ab = 2, must be a number > 0)");  // no second key comes in
+  EXPECT_EQ(message("a", "1\nb = 2"),
+            R"(--set: a = 1\x0ab = 2, must be a number > 0)");  // no second key comes in
   EXPECT_EQ(message("a", "x\xFF"), R"(--set: a = x\xff, the value must be a TOML literal or a bare word)");
   EXPECT_EQ(message("a.b", "1"), "--set: a.b = 1, a is not a table");
   EXPECT_EQ(message("a[1]", "1"), "--set: a[1] = 1, a has no elements");
   EXPECT_EQ(message("b", "1"), "--set: b = 1, unknown key; known here: a, series");
-  EXPECT_EQ(message("series[s41].name", "x"), "--set: series[s41].name = x, no such series; there are: s40, 2");
+  EXPECT_EQ(message("series[s41].name", "x"),
+            "--set: series[s41].name = x, no such series; there are: s40, 2");
   EXPECT_EQ(message("series[0].name", "x"), "--set: series[0].name = x, no such series; there are: s40, 2");
   EXPECT_EQ(message("rows[1].name", "x"), "--set: rows[1].name = x, there is no [[rows]] in the file");
   EXPECT_EQ(message("series.name", "x"), "--set: series.name = x, series is not a table");
-  for (const char* key : {"", ".", "a.", ".a", "a..b", "series[", "series[]", "series[s40", "series[s40]x", "a b", "]"})
-    EXPECT_EQ(message(key, "1"), (*key != '\0' ? std::string("--set: ") + key + " = 1, " : std::string("--set: ")) +
-                                     "the key must be like wire.length_mm or series[s40].points");
+  for (const char* key :
+       {"", ".", "a.", ".a", "a..b", "series[", "series[]", "series[s40", "series[s40]x", "a b", "]"})
+    EXPECT_EQ(message(key, "1"),
+              (*key != '\0' ? std::string("--set: ") + key + " = 1, " : std::string("--set: ")) +
+                  "the key must be like wire.length_mm or series[s40].points");
 }
 
 TEST(TomlOverride, ArgumentIsSplitAtTheFirstEqualsSign) {
@@ -281,10 +289,11 @@ TEST(TomlReader, CharactersThatTheLibraryCannotBearNeverReachIt) {
   EXPECT_EQ(message_of("a = 7='" + word + "'\n", nothing), "a.toml:1: not TOML: a second = after a key");
   EXPECT_EQ(message_of("\na = 7['" + word + "'\n", nothing), "a.toml:2: not TOML: [ inside a word");
   EXPECT_EQ(message_of("a = 7.'" + word + "'\n", nothing), "a.toml:1: not TOML: ' inside a word");
-  EXPECT_EQ(message_of("a=\"b\"\nc={d='e',f=[[1],[{g=2}]]}\n[h]\n'i'=1\n[[j]]\n\"k\".l=\"\"\"\n" + word + "\"\"\"\n",
-                       [](TomlDocument& document) {
-                         for (const char* key : {"a", "c", "h", "j"}) EXPECT_TRUE(document.root().has(key));
-                       }),
+  EXPECT_EQ(message_of(
+                "a=\"b\"\nc={d='e',f=[[1],[{g=2}]]}\n[h]\n'i'=1\n[[j]]\n\"k\".l=\"\"\"\n" + word + "\"\"\"\n",
+                [](TomlDocument& document) {
+                  for (const char* key : {"a", "c", "h", "j"}) EXPECT_TRUE(document.root().has(key));
+                }),
             "accepted");
 }
 
@@ -295,7 +304,8 @@ TEST(TomlReader, DeepNestingIsRefusedBeforeItExhaustsTheStack) {
   EXPECT_EQ(message_of("x = 1\n" + dots + " = 1\n", nothing), "a.toml:2: a key has more than 32 dots");
   EXPECT_EQ(message_of("[" + dots + "]\n", nothing), "a.toml:1: a key has more than 32 dots");
   const std::string brackets = "a = " + std::string(100'000, '[');
-  EXPECT_TRUE(message_of(brackets, nothing).starts_with("a.toml:1: not TOML: ")) << message_of(brackets, nothing);
+  EXPECT_TRUE(message_of(brackets, nothing).starts_with("a.toml:1: not TOML: "))
+      << message_of(brackets, nothing);
   // Dots in texts and comments are no keys.
   const std::string many(200, '.');
   EXPECT_EQ(message_of("# " + many + "\n#" + many, nothing), "accepted");
@@ -329,7 +339,8 @@ TEST(TomlReader, FilesThatCannotBeReadHaveTheirMessage) {
   EXPECT_EQ(message(folder / "a.toml"), "accepted");
   if (::geteuid() != 0) {  // the superuser reads every file
     std::filesystem::permissions(folder / "a.toml", std::filesystem::perms::none);
-    EXPECT_EQ(message(folder / "a.toml"), (folder / "a.toml").string() + ": cannot be read (Permission denied)");
+    EXPECT_EQ(message(folder / "a.toml"),
+              (folder / "a.toml").string() + ": cannot be read (Permission denied)");
   }
   std::filesystem::remove_all(folder);
 }
@@ -358,7 +369,8 @@ TEST(TomlReader, PlainNames) {
   };
   for (const char* good : {"a", "ball joint", "_x", "8.9 kg (slow)", "L\xc3\xa4ngs"})
     EXPECT_EQ(problems(good), "") << good;
-  for (const char* bad : {"<b>", "a&b", "../x", "a/b", "a\\b", "a,b", "a[b]", "-a", " a", "a\tb", "a\"b", "a::b", ""})
+  for (const char* bad :
+       {"<b>", "a&b", "../x", "a/b", "a\\b", "a,b", "a[b]", "-a", " a", "a\tb", "a\"b", "a::b", ""})
     EXPECT_THAT(problems(bad), testing::HasSubstr("must be 1 to 64 letters")) << bad;
   EXPECT_NE(problems(std::string(65, 'a')), "");
 }

@@ -25,13 +25,14 @@ TEST(XmlText, ElementsKnowTheirPlacesInTheText) {
   EXPECT_EQ(text.substr(a.close_begin, a.end - a.close_begin), "</a>");
   EXPECT_TRUE(b.empty);
   EXPECT_EQ(with_insertions(text, {{a.close_begin, "<d/>"}, {b.begin, "!"}, {a.close_begin, "<e/>"}}),
-            "<?xml version='1.0'?>\n<!-- <b> -->\n<a x=\"1 &lt; 2\">\n  !<b name='n'/><![CDATA[<c>]]><d/><e/></a>\n");
+            "<?xml version='1.0'?>\n<!-- <b> -->\n<a x=\"1 &lt; 2\">\n  !<b "
+            "name='n'/><![CDATA[<c>]]><d/><e/></a>\n");
   EXPECT_EQ(xml_escaped("a<\"&'>"), "a&lt;&quot;&amp;&apos;&gt;");
 }
 
 TEST(XmlText, RefusesWithTheLineWhatIsNoXml) {
-  for (const char* text : {"<a>\n<b></a>", "<a", "<a>", "", "<a x=1/>", "<a x=\"1/>", "<a/><b/>", "<!DOCTYPE a><a/>",
-                           "<!-- a", "< a/>", "</a>", "<a x y='1'/>"}) {
+  for (const char* text : {"<a>\n<b></a>", "<a", "<a>", "", "<a x=1/>", "<a x=\"1/>", "<a/><b/>",
+                           "<!DOCTYPE a><a/>", "<!-- a", "< a/>", "</a>", "<a x y='1'/>"}) {
     EXPECT_THROW(static_cast<void>(scan_xml("f.xml", text)), InputError) << text;
   }
   std::string deep;

@@ -54,7 +54,8 @@ TEST(Allocations, Experiment) {
 
 TEST(Allocations, RobotDescription) {
   const std::string robot =
-      "<robot name='r'><link name='a'/><link name='b'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' "
+      "<robot name='r'><link name='a'/><link name='b'><inertial><mass value='1'/><inertia ixx='1' iyy='1' "
+      "izz='1' "
       "ixy='0' "
       "ixz='0' iyz='0'/></inertial></link><joint name='j' type='continuous'><parent link='a'/><child "
       "link='b'/></joint></robot>";
@@ -62,7 +63,9 @@ TEST(Allocations, RobotDescription) {
 }
 
 TEST(Allocations, Meshes) {
-  EXPECT_GT(fail_each([] { return fuzz::read_bytes_as_mesh("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", ".off"); }),
+  EXPECT_GT(fail_each([] {
+              return fuzz::read_bytes_as_mesh("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", ".off");
+            }),
             3);
 }
 

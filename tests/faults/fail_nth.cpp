@@ -21,7 +21,8 @@ bool fails(const char* call) {
   static const char* const at = std::getenv("SNARE_FAIL_AT");
   if (wanted == nullptr || at == nullptr || std::strcmp(wanted, call) != 0) return false;
   if (++count != std::atol(at)) return false;
-  if (const char* const note = std::getenv("SNARE_FAIL_NOTE")) ::close(::open(note, O_WRONLY | O_CREAT, 0600));
+  if (const char* const note = std::getenv("SNARE_FAIL_NOTE"))
+    ::close(::open(note, O_WRONLY | O_CREAT, 0600));
   errno = ENOSPC;
   return true;
 }
@@ -40,7 +41,8 @@ bool is_regular(int descriptor) {
 bool is_shared_memory(int descriptor) {
   char name[64], path[9]{};
   std::snprintf(name, sizeof name, "/proc/self/fd/%d", descriptor);
-  return ::readlink(name, path, sizeof path) == sizeof path && std::memcmp(path, "/dev/shm/", sizeof path) == 0;
+  return ::readlink(name, path, sizeof path) == sizeof path &&
+         std::memcmp(path, "/dev/shm/", sizeof path) == 0;
 }
 
 template <class Function>
@@ -53,7 +55,8 @@ Function* next(const char* name) {
 extern "C" {
 
 std::size_t fwrite(const void* from, std::size_t size, std::size_t count, std::FILE* stream) {
-  static auto* const original = next<std::size_t(const void*, std::size_t, std::size_t, std::FILE*)>("fwrite");
+  static auto* const original =
+      next<std::size_t(const void*, std::size_t, std::size_t, std::FILE*)>("fwrite");
   return is_file(stream) && fails("fwrite") ? 0 : original(from, size, count, stream);
 }
 

@@ -18,8 +18,8 @@ inline bool read_bytes_as_checkpoint(std::string_view bytes) {
     return text;
   }();
   const std::uint64_t sum = base::fingerprint(bytes);
-  std::ofstream(file, std::ios::binary) << head << std::string_view(reinterpret_cast<const char*>(&sum), sizeof sum)
-                                        << bytes;
+  std::ofstream(file, std::ios::binary)
+      << head << std::string_view(reinterpret_cast<const char*>(&sum), sizeof sum) << bytes;
   return app::read_motion_checkpoint(file, "input").progress.has_value();
 }
 

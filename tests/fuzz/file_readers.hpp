@@ -47,7 +47,8 @@ inline const std::filesystem::path& folder_of_files() {
       std::error_code ignored;
       std::filesystem::remove_all(top, ignored);
     }
-    std::filesystem::path top = std::filesystem::temp_directory_path() / ("snare_fuzz_" + std::to_string(::getpid()));
+    std::filesystem::path top =
+        std::filesystem::temp_directory_path() / ("snare_fuzz_" + std::to_string(::getpid()));
     std::filesystem::path path = top / "tests/ranges";
   } folder;
   return folder.path;
@@ -94,11 +95,13 @@ inline bool read_bytes_as_wire(std::string_view bytes) {
 }
 
 inline bool read_bytes_as_arm(std::string_view bytes) {
-  return read_bytes_as_file(bytes, "fuzz_arm.toml", [](const auto& f) { static_cast<void>(multibody::read_arm(f)); });
+  return read_bytes_as_file(bytes, "fuzz_arm.toml",
+                            [](const auto& f) { static_cast<void>(multibody::read_arm(f)); });
 }
 
 inline bool read_bytes_as_law(std::string_view bytes) {
-  return read_bytes_as_file(bytes, "law.json", [](const auto& f) { static_cast<void>(scenario::read_law_file(f)); });
+  return read_bytes_as_file(bytes, "law.json",
+                            [](const auto& f) { static_cast<void>(scenario::read_law_file(f)); });
 }
 
 /// A journal of a sweep of which every line that counts must read back as what was written.
@@ -107,7 +110,8 @@ inline bool read_bytes_as_journal(std::string_view bytes) {
     constexpr std::uint64_t cases = 50;
     const study::Journal journal(f, "identity", cases);
     for (std::uint64_t k = 0; k < cases; ++k) {
-      if (journal.has(k) != journal.result(k).has_value()) throw std::logic_error("a case is there and is not");
+      if (journal.has(k) != journal.result(k).has_value())
+        throw std::logic_error("a case is there and is not");
       if (const auto line = journal.result(k)) static_cast<void>(study::record_of(*line));
     }
   });

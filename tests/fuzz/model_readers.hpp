@@ -22,7 +22,8 @@ namespace snare::fuzz {
 inline bool read_bytes_as_urdf(std::string_view bytes) {
   try {
     const multibody::RobotDescription robot = multibody::parse_urdf("fuzz.urdf", std::string(bytes));
-    if (robot.links.size() != robot.joints.size() + 1) throw std::logic_error("links and joints form no tree");
+    if (robot.links.size() != robot.joints.size() + 1)
+      throw std::logic_error("links and joints form no tree");
     return true;
   } catch (const base::InputError& error) {
     if (error.problems().empty()) throw std::logic_error("an error without a problem");

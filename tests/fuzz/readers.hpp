@@ -49,7 +49,8 @@ inline bool read_bytes_as_experiment(std::string_view bytes) {
       for (const double value :
            {test.wire.diameter, test.wire.length, test.wire.bending_stiffness(), test.wire.axial_stiffness(),
             test.wire.torsional_stiffness(), test.mount.span, test.contact_position})
-        if (!(std::isfinite(value) && value > 0.0)) throw std::logic_error("a number that must be positive is not");
+        if (!(std::isfinite(value) && value > 0.0))
+          throw std::logic_error("a number that must be positive is not");
       if (test.travel.size() < 2) throw std::logic_error("a series without travel");
     }
     return true;

@@ -56,9 +56,9 @@ void compare_random_trees(Base base, unsigned seed) {
     dart.body(loaded).setExtTorque(load.moment, false);
 
     multibody::DynamicsWorkspace workspace(tree);
-    EXPECT_LT(
-        test::relative_difference(multibody::mass_matrix(tree, state.q, workspace), dart.skeleton().getMassMatrix()),
-        1e-10);
+    EXPECT_LT(test::relative_difference(multibody::mass_matrix(tree, state.q, workspace),
+                                        dart.skeleton().getMassMatrix()),
+              1e-10);
     const Eigen::VectorXd bias = multibody::inverse_dynamics(
         tree, state.q, state.v, Eigen::VectorXd::Zero(tree.velocities()), wrenches, workspace);
     EXPECT_LT(test::relative_difference(
@@ -76,18 +76,21 @@ void compare_random_trees(Base base, unsigned seed) {
     EXPECT_LT(test::relative_difference(pose.R, dart_pose.linear()), 1e-10);
     EXPECT_LT(test::relative_difference(pose.p, dart_pose.translation()), 1e-10);
     const multibody::Matrix6X jacobian = multibody::frame_jacobian(tree, kinematics, frame);
-    EXPECT_LT(test::relative_difference(jacobian, dart.skeleton().getWorldJacobian(&dart.body(loaded))), 1e-10);
+    EXPECT_LT(test::relative_difference(jacobian, dart.skeleton().getWorldJacobian(&dart.body(loaded))),
+              1e-10);
     EXPECT_LT(test::relative_difference(multibody::frame_jacobian_rate(tree, kinematics, frame),
                                         dart.skeleton().getJacobianClassicDeriv(&dart.body(loaded))),
               1e-10);
-    EXPECT_LT(test::relative_difference(
-                  jacobian * state.v,
-                  dart.body(loaded).getSpatialVelocity(dart::dynamics::Frame::World(), dart::dynamics::Frame::World())),
+    EXPECT_LT(test::relative_difference(jacobian * state.v,
+                                        dart.body(loaded).getSpatialVelocity(dart::dynamics::Frame::World(),
+                                                                             dart::dynamics::Frame::World())),
               1e-10);
 
-    EXPECT_LT(std::abs(multibody::kinetic_energy(tree, kinematics) / dart.skeleton().computeKineticEnergy() - 1.0),
-              1e-10);
-    EXPECT_LT(std::abs(multibody::potential_energy(tree, kinematics) + moment_of_mass(plain, dart).dot(plain.gravity)),
+    EXPECT_LT(
+        std::abs(multibody::kinetic_energy(tree, kinematics) / dart.skeleton().computeKineticEnergy() - 1.0),
+        1e-10);
+    EXPECT_LT(std::abs(multibody::potential_energy(tree, kinematics) +
+                       moment_of_mass(plain, dart).dot(plain.gravity)),
               1e-9);
     const multibody::Wrench momentum = multibody::momentum(tree, kinematics);
     EXPECT_LT(test::relative_difference(momentum.force, linear_momentum(plain, dart)), 1e-10);
@@ -131,7 +134,8 @@ TEST(Dart, AgreesOnTrajectories) {
                             a2 = acceleration(s2, v2);
       const Eigen::VectorXd v3 = state.v + 0.5 * h * a2, s3 = state.q + 0.5 * h * q2, q3 = rate(s3, v3),
                             a3 = acceleration(s3, v3);
-      const Eigen::VectorXd v4 = state.v + h * a3, s4 = state.q + h * q3, q4 = rate(s4, v4), a4 = acceleration(s4, v4);
+      const Eigen::VectorXd v4 = state.v + h * a3, s4 = state.q + h * q3, q4 = rate(s4, v4),
+                            a4 = acceleration(s4, v4);
       state.q += h / 6.0 * (q1 + 2.0 * q2 + 2.0 * q3 + q4);
       state.v += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
     }

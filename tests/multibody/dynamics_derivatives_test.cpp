@@ -25,10 +25,11 @@ void compare(test::Base base, unsigned seed) {
     // Differences are good to some 1e-11 of the largest entry (derivatives.hpp) where the torques are of order one;
     // they reach a hundred here.
     const auto by_motion = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
-      return multibody::inverse_dynamics(tree, test::moved(tree, state.q, x, 1.0), state.v, acceleration, wrenches,
-                                         workspace);
+      return multibody::inverse_dynamics(tree, test::moved(tree, state.q, x, 1.0), state.v, acceleration,
+                                         wrenches, workspace);
     };
-    EXPECT_LT(test::compare_jacobian(by_motion, Eigen::VectorXd::Zero(n), derivatives.position).relative, 1e-9);
+    EXPECT_LT(test::compare_jacobian(by_motion, Eigen::VectorXd::Zero(n), derivatives.position).relative,
+              1e-9);
     const auto by_velocity = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
       return multibody::inverse_dynamics(tree, state.q, x, acceleration, wrenches, workspace);
     };
@@ -37,7 +38,8 @@ void compare(test::Base base, unsigned seed) {
     } else {  // a lone joint, or slides only: no velocity product at all
       EXPECT_LT((by_velocity(state.v) - by_velocity(2.0 * state.v)).norm(), 1e-12);
     }
-    EXPECT_LT(test::relative_difference(derivatives.mass, multibody::mass_matrix(tree, state.q, workspace)), 1e-12);
+    EXPECT_LT(test::relative_difference(derivatives.mass, multibody::mass_matrix(tree, state.q, workspace)),
+              1e-12);
 
     // With respect to the coordinates themselves, quaternions off the unit sphere included.
     Eigen::VectorXd q = state.q;
@@ -47,11 +49,13 @@ void compare(test::Base base, unsigned seed) {
     const auto by_coordinates = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
       return multibody::inverse_dynamics(tree, x, state.v, acceleration, wrenches, workspace);
     };
-    EXPECT_LT(test::compare_jacobian(by_coordinates, q, derivatives.position * multibody::coordinate_motion(tree, q))
+    EXPECT_LT(test::compare_jacobian(by_coordinates, q,
+                                     derivatives.position * multibody::coordinate_motion(tree, q))
                   .relative,
               1e-9);
     EXPECT_LT(test::relative_difference(
-                  multibody::coordinate_motion(tree, state.q) * test::coordinate_rate(tree, state.q, state.v), state.v),
+                  multibody::coordinate_motion(tree, state.q) * test::coordinate_rate(tree, state.q, state.v),
+                  state.v),
               1e-14);
   }
 }

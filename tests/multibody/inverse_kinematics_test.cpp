@@ -92,8 +92,8 @@ TEST(InverseKinematics, TakesTheSolutionNextToThePosture) {
   EXPECT_LT((there.p - X.p).norm(), 1e-9);
   EXPECT_LT((there.R - X.R).norm(), 1e-9);
   // Turned over: (a + pi, -b, c - pi) of the wrist's three angles.
-  const Reach over =
-      reach_pose(tree, tree.find_frame("tip"), X, angles({0.4, -0.3, 0.9, 0.5 - pi, -0.7, -0.2 + pi}), all(2.0 * pi));
+  const Reach over = reach_pose(tree, tree.find_frame("tip"), X,
+                                angles({0.4, -0.3, 0.9, 0.5 - pi, -0.7, -0.2 + pi}), all(2.0 * pi));
   ASSERT_TRUE(over.found());
   EXPECT_LT((over.q - angles({0.4, -0.3, 0.9, 0.5 - pi, -0.7, -0.2 + pi})).cwiseAbs().maxCoeff(), 1e-8);
 }
@@ -102,7 +102,8 @@ TEST(InverseKinematics, SaysHowFarAwayItStays) {
   const Tree tree = six_hinges();
   Pose far;
   far.p = {3.0, 0.0, 0.0};
-  const Reach reach = reach_pose(tree, tree.find_frame("tip"), far, angles({0.1, 0.1, 0.1, 0.1, 0.1, 0.1}), all(pi));
+  const Reach reach =
+      reach_pose(tree, tree.find_frame("tip"), far, angles({0.1, 0.1, 0.1, 0.1, 0.1, 0.1}), all(pi));
   EXPECT_FALSE(reach.found());
   EXPECT_EQ(reach.beyond, -1);
   EXPECT_NEAR(reach.distance, 1.0, 0.01);  // stretched out: 1 + 0.8 + 0.2
@@ -139,7 +140,8 @@ TEST(InverseKinematics, ReachesWithARedundantArmOfWhichAJointIsHeld) {
     const VectorXd there = arm.coordinates(q);
     Kinematics k(tree);
     place(tree, there, k);
-    const Reach reach = reach_pose(tree, arm.tip, frame_pose(tree, k, arm.tip), arm.coordinates(posture), joints);
+    const Reach reach =
+        reach_pose(tree, arm.tip, frame_pose(tree, k, arm.tip), arm.coordinates(posture), joints);
     ASSERT_TRUE(reach.found());
     EXPECT_LT((reach.q - there).cwiseAbs().maxCoeff(), 1e-6) << trial;
   }

@@ -20,9 +20,10 @@ inline KDL::Segment kdl_segment(const PlainBody& b, std::size_t i) {
   const KDL::Frame X(to_kdl(b.R), to_kdl(b.p));
   const KDL::Vector axis = to_kdl(Eigen::Vector3d(b.R * b.axis));
   const std::string name = "joint" + std::to_string(i);
-  const KDL::Joint joint = b.joint == PlainBody::Joint::revolute    ? KDL::Joint(name, X.p, axis, KDL::Joint::RotAxis)
-                           : b.joint == PlainBody::Joint::prismatic ? KDL::Joint(name, X.p, axis, KDL::Joint::TransAxis)
-                                                                    : KDL::Joint(name, KDL::Joint::Fixed);
+  const KDL::Joint joint =
+      b.joint == PlainBody::Joint::revolute    ? KDL::Joint(name, X.p, axis, KDL::Joint::RotAxis)
+      : b.joint == PlainBody::Joint::prismatic ? KDL::Joint(name, X.p, axis, KDL::Joint::TransAxis)
+                                               : KDL::Joint(name, KDL::Joint::Fixed);
   const Eigen::Matrix3d& I = b.inertia;
   return KDL::Segment(
       body_name(i), joint, X,

@@ -28,7 +28,8 @@ TEST(Kdl, AgreesOnInverseDynamicsOfTrees) {
     // KDL takes wrenches in the segments' frames, and only where a name is given.
     const std::size_t loaded = std::uniform_int_distribution<std::size_t>(0, plain.bodies.size() - 1)(random);
     const multibody::Wrench load{test::random_vector(random, 5.0), test::random_vector(random, 5.0)};
-    const multibody::BodyWrench on_body = multibody::wrench_on_frame(tree, static_cast<int>(loaded) + 1, load);
+    const multibody::BodyWrench on_body =
+        multibody::wrench_on_frame(tree, static_cast<int>(loaded) + 1, load);
     std::vector<multibody::Wrench> wrenches(static_cast<std::size_t>(tree.size()));
     if (on_body.body >= 0) wrenches[static_cast<std::size_t>(on_body.body)] = on_body.F_B;
     KDL::WrenchMap kdl_wrenches;
@@ -39,16 +40,18 @@ TEST(Kdl, AgreesOnInverseDynamicsOfTrees) {
     ASSERT_EQ(static_cast<int>(kdl.getNrOfJoints()), tree.velocities());
     KDL::TreeIdSolver_RNE solver(kdl, test::to_kdl(plain.gravity));
     KDL::JntArray torque(kdl.getNrOfJoints());
-    ASSERT_EQ(solver.CartToJnt(test::to_kdl(state.q), test::to_kdl(state.v), test::to_kdl(acceleration), kdl_wrenches,
-                               torque),
+    ASSERT_EQ(solver.CartToJnt(test::to_kdl(state.q), test::to_kdl(state.v), test::to_kdl(acceleration),
+                               kdl_wrenches, torque),
               0);
 
     multibody::DynamicsWorkspace workspace(tree);
-    const Eigen::VectorXd ours = multibody::inverse_dynamics(tree, state.q, state.v, acceleration, wrenches, workspace);
+    const Eigen::VectorXd ours =
+        multibody::inverse_dynamics(tree, state.q, state.v, acceleration, wrenches, workspace);
     EXPECT_LT(test::relative_difference(ours, torque.data), 1e-10);
     // Forward dynamics of KDL's torques give back the accelerations.
     EXPECT_LT(test::relative_difference(
-                  multibody::forward_dynamics(tree, state.q, state.v, torque.data, wrenches, workspace), acceleration),
+                  multibody::forward_dynamics(tree, state.q, state.v, torque.data, wrenches, workspace),
+                  acceleration),
               1e-10);
   }
 }
@@ -63,7 +66,8 @@ TEST(Kdl, AgreesOnChains) {
     const Eigen::VectorXd torque = test::random_values(random, tree.velocities(), 10.0);
     const int tip = static_cast<int>(plain.bodies.size());
     KDL::Chain chain;
-    for (std::size_t i = 0; i < plain.bodies.size(); ++i) chain.addSegment(test::kdl_segment(plain.bodies[i], i));
+    for (std::size_t i = 0; i < plain.bodies.size(); ++i)
+      chain.addSegment(test::kdl_segment(plain.bodies[i], i));
     const unsigned n = chain.getNrOfJoints();
     const KDL::JntArray q = test::to_kdl(state.q), v = test::to_kdl(state.v);
 
@@ -71,22 +75,27 @@ TEST(Kdl, AgreesOnChains) {
     KDL::ChainDynParam parameters(chain, test::to_kdl(plain.gravity));
     KDL::JntSpaceInertiaMatrix inertia(static_cast<int>(n));
     parameters.JntToMass(q, inertia);
-    EXPECT_LT(test::relative_difference(multibody::mass_matrix(tree, state.q, workspace), inertia.data), 1e-10);
+    EXPECT_LT(test::relative_difference(multibody::mass_matrix(tree, state.q, workspace), inertia.data),
+              1e-10);
 
     KDL::JntArray coriolis(n), gravity(n);
     parameters.JntToCoriolis(q, v, coriolis);
     parameters.JntToGravity(q, gravity);
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(tree.velocities());
-    EXPECT_LT(test::relative_difference(multibody::inverse_dynamics(tree, state.q, state.v, none, {}, workspace),
-                                        coriolis.data + gravity.data),
-              1e-10);
+    EXPECT_LT(
+        test::relative_difference(multibody::inverse_dynamics(tree, state.q, state.v, none, {}, workspace),
+                                  coriolis.data + gravity.data),
+        1e-10);
 
     KDL::ChainFdSolver_RNE forward(chain, test::to_kdl(plain.gravity));
     KDL::JntArray acceleration(n);
-    ASSERT_EQ(forward.CartToJnt(q, v, test::to_kdl(torque), KDL::Wrenches(chain.getNrOfSegments()), acceleration), 0);
-    EXPECT_LT(test::relative_difference(multibody::forward_dynamics(tree, state.q, state.v, torque, {}, workspace),
-                                        acceleration.data),
-              1e-10);
+    ASSERT_EQ(
+        forward.CartToJnt(q, v, test::to_kdl(torque), KDL::Wrenches(chain.getNrOfSegments()), acceleration),
+        0);
+    EXPECT_LT(
+        test::relative_difference(multibody::forward_dynamics(tree, state.q, state.v, torque, {}, workspace),
+                                  acceleration.data),
+        1e-10);
 
     // KDL's rows are linear over angular.
     multibody::Kinematics kinematics(tree);

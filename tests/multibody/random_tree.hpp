@@ -57,8 +57,9 @@ inline PlainTree random_tree(std::mt19937& random, Base base, bool branched = tr
   const int n = count(random);
   for (int i = 0; i < n; ++i) {
     PlainBody body;
-    body.parent =
-        branched && i > 0 ? std::uniform_int_distribution<int>(base == Base::floating ? 0 : -1, i - 1)(random) : i - 1;
+    body.parent = branched && i > 0
+                      ? std::uniform_int_distribution<int>(base == Base::floating ? 0 : -1, i - 1)(random)
+                      : i - 1;
     const int drawn = kind(random);
     body.joint = drawn < 6   ? PlainBody::Joint::revolute
                  : drawn < 8 ? PlainBody::Joint::prismatic
@@ -72,8 +73,8 @@ inline PlainTree random_tree(std::mt19937& random, Base base, bool branched = tr
     // Moments of a cloud of mass: positive definite, triangle inequality.
     const Eigen::Vector3d spread(0.05 + unit(random), 0.05 + unit(random), 0.05 + unit(random));
     const Eigen::Matrix3d R = random_rotation(random);
-    body.inertia =
-        R * (Eigen::Matrix3d::Identity() * spread.sum() - Eigen::Matrix3d(spread.asDiagonal())) * R.transpose();
+    body.inertia = R * (Eigen::Matrix3d::Identity() * spread.sum() - Eigen::Matrix3d(spread.asDiagonal())) *
+                   R.transpose();
     tree.bodies.push_back(body);
   }
   return tree;

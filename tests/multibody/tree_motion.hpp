@@ -40,12 +40,14 @@ inline Eigen::VectorXd moved(const multibody::Tree& tree, const Eigen::VectorXd&
     const double angle = theta.norm();
     const double s2 = std::sin(0.5 * angle);
     const double first = angle > 1e-4 ? 2.0 * s2 * s2 / (angle * angle) : 0.5 - angle * angle / 24.0;
-    const double second =
-        angle > 1e-2 ? (angle - std::sin(angle)) / (angle * angle * angle) : 1.0 / 6.0 - angle * angle / 120.0;
+    const double second = angle > 1e-2 ? (angle - std::sin(angle)) / (angle * angle * angle)
+                                       : 1.0 / 6.0 - angle * angle / 120.0;
     const Eigen::Vector3d turned = theta.cross(shift);
-    next.segment<3>(i) += multibody::joint_pose(body, q).R * (shift + first * turned + second * theta.cross(turned));
+    next.segment<3>(i) +=
+        multibody::joint_pose(body, q).R * (shift + first * turned + second * theta.cross(turned));
     const double half = angle > 1e-8 ? s2 / angle : 0.5;
-    const Eigen::Quaterniond step(std::cos(0.5 * angle), half * theta.x(), half * theta.y(), half * theta.z());
+    const Eigen::Quaterniond step(std::cos(0.5 * angle), half * theta.x(), half * theta.y(),
+                                  half * theta.z());
     const Eigen::Quaterniond now(q[i + 3], q[i + 4], q[i + 5], q[i + 6]);
     const Eigen::Quaterniond then = (now * step).normalized();
     next.segment<4>(i + 3) << then.w(), then.x(), then.y(), then.z();

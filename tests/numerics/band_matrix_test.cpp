@@ -14,7 +14,8 @@ namespace {
 Eigen::MatrixXd dense(const SymmetricBandMatrix& a) {
   Eigen::MatrixXd full = Eigen::MatrixXd::Zero(a.order(), a.order());
   for (int j = 0; j < a.order(); ++j) {
-    for (int i = j; i < a.order() && i - j <= a.half_bandwidth(); ++i) full(i, j) = full(j, i) = a.lower(i, j);
+    for (int i = j; i < a.order() && i - j <= a.half_bandwidth(); ++i)
+      full(i, j) = full(j, i) = a.lower(i, j);
   }
   return full;
 }
@@ -89,7 +90,8 @@ TEST(BandLdlt, SolvesLikeDenseLdlt) {
       const Eigen::MatrixXd expected = dense(a).ldlt().solve(rhs);
       // Diagonally heavy: condition below 1e2, so 1e2 eps.
       EXPECT_LT((x - expected).norm(), 1e-13 * expected.norm()) << "n " << n << " b " << b;
-      for (Eigen::Index c = 0; c < rhs.cols(); ++c) {  // four, two and one at once: the same bits as each alone
+      for (Eigen::Index c = 0; c < rhs.cols();
+           ++c) {  // four, two and one at once: the same bits as each alone
         Eigen::VectorXd alone = rhs.col(c);
         factor.solve(alone);
         EXPECT_EQ(alone, x.col(c)) << "n " << n << " b " << b;

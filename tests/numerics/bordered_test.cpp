@@ -157,7 +157,8 @@ TEST(BorderedPattern, RefillsWhatToSparseMakes) {
     for (int i = 0; i < n; ++i) column[i] = uniform(random);
     system.columns.emplace_back(2, &column);
     system.anchors = {{4, 0}, {9, 1}};
-    system.rows = {{0, 4, uniform(random)}, {1, 9, uniform(random)}, {1, 9, uniform(random)}, {2, 0, uniform(random)}};
+    system.rows = {
+        {0, 4, uniform(random)}, {1, 9, uniform(random)}, {1, 9, uniform(random)}, {2, 0, uniform(random)}};
     for (int i = 0; i < m; ++i) system.corner(i, i) = uniform(random);
   };
   for (const auto zeros : {BorderedPattern::Zeros::kept, BorderedPattern::Zeros::dropped}) {

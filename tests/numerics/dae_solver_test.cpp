@@ -72,8 +72,9 @@ TEST(DaeSolver, RefinesOrPivotsWhereDigitsWouldBeLost) {
     long pivots;
   };
   for (const Tail& tail : {Tail{1e-10, 3.0, 0}, Tail{1e-18, 3.0, 0}, Tail{0.0, 3.0, 0}, Tail{1.0, 1.0, 1}}) {
-    std::vector<Triplet> list{{0, 0, tail.first}, {0, 1, 1.0},  {1, 0, 1.0},  {1, 1, tail.second}, {1, 2, 2.0},
-                              {2, 1, 0.5},        {6, 6, 50.0}, {6, 7, -1.0}, {7, 6, 2.0},         {7, 7, 0.1}};
+    std::vector<Triplet> list{{0, 0, tail.first}, {0, 1, 1.0}, {1, 0, 1.0},  {1, 1, tail.second},
+                              {1, 2, 2.0},        {2, 1, 0.5}, {6, 6, 50.0}, {6, 7, -1.0},
+                              {7, 6, 2.0},        {7, 7, 0.1}};
     for (int i = 2; i < 6; ++i) {
       for (int j = 2; j < 6; ++j) list.push_back({i, j, i == j ? 3.0 : 1.0 / (i + 2 * j)});
     }
@@ -98,8 +99,9 @@ TEST(DaeSolver, SaysWhenAMatrixIsSingular) {
 
 // A row of a place to which others add, a multiplier for one, gives no rate.
 TEST(DaeSolver, LeavesRatesThatTheirRowDoesNotGive) {
-  const std::vector<Triplet> list{{0, 0, 10.0}, {0, 2, -1.0}, {1, 1, 10.0}, {1, 3, -1.0}, {1, 4, 1.0}, {2, 0, 3.0},
-                                  {2, 2, 1.0},  {3, 1, 3.0},  {3, 3, 1.0},  {3, 4, 2.0},  {4, 3, 1.0}, {4, 1, 0.5}};
+  const std::vector<Triplet> list{{0, 0, 10.0}, {0, 2, -1.0}, {1, 1, 10.0}, {1, 3, -1.0},
+                                  {1, 4, 1.0},  {2, 0, 3.0},  {2, 2, 1.0},  {3, 1, 3.0},
+                                  {3, 3, 1.0},  {3, 4, 2.0},  {4, 3, 1.0},  {4, 1, 0.5}};
   const SparseMatrix a = from_triplets(5, list);
   DaeSolver solver(a, {{0, 2}, {1, 3}});
   ASSERT_EQ(solver.pairs(), (std::vector<std::pair<int, int>>{{0, 2}}));
@@ -116,7 +118,8 @@ TEST(DaeSolver, GivesWhatStandsAloneByItsDiagonal) {
   const SparseMatrix a = chain(n, 20.0, 4);
   std::vector<Triplet> list{{0, 0, 4.0}, {a.order + 1, a.order + 1, -2.0}};
   for (int j = 0; j < a.order; ++j) {
-    for (int s = a.column_start[static_cast<std::size_t>(j)]; s < a.column_start[static_cast<std::size_t>(j) + 1]; ++s)
+    for (int s = a.column_start[static_cast<std::size_t>(j)];
+         s < a.column_start[static_cast<std::size_t>(j) + 1]; ++s)
       list.push_back({a.row[static_cast<std::size_t>(s)] + 1, j + 1, a.value[static_cast<std::size_t>(s)]});
   }
   std::vector<std::pair<int, int>> pairs = rates_of(n);

@@ -47,8 +47,9 @@ TEST(DenseSolvers, EigenvaluesThatAreComplex) {
     const std::complex<double> root = std::polar(1.0, 2.0 * M_PI * k / n);
     EXPECT_LT((modes.values.array() - root).abs().minCoeff(), 1e-13) << k;
   }
-  EXPECT_LT((shift.cast<std::complex<double>>() * modes.vectors - modes.vectors * modes.values.asDiagonal()).norm(),
-            1e-13);
+  EXPECT_LT(
+      (shift.cast<std::complex<double>>() * modes.vectors - modes.vectors * modes.values.asDiagonal()).norm(),
+      1e-13);
   for (int k = 0; k < n; ++k) EXPECT_NEAR(modes.vectors.col(k).norm(), 1.0, 1e-14);
 }
 

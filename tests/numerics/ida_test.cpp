@@ -46,7 +46,9 @@ class Oscillator final : public DaePart {
     rows[first_ + 2] += at.y[first_ + 2] - 0.5 * (v * v + omega_ * omega_ * x * x);
   }
   void jacobian(const DaePoint& at, double c, std::vector<double>& values) override {
-    const auto add = [&](int i, int j, double value) { values[static_cast<std::size_t>(slot_[i][j])] += value; };
+    const auto add = [&](int i, int j, double value) {
+      values[static_cast<std::size_t>(slot_[i][j])] += value;
+    };
     add(0, 0, c);
     add(0, 1, -1.0);
     add(1, 0, omega_ * omega_);
@@ -114,7 +116,8 @@ TEST(Ida, RatesFollowTheirPlaces) {
   EXPECT_NEAR(ida.y()[0], std::cos(6.0), 3e-8);  // as above
   EXPECT_NEAR(ida.y()[2], 2.0, 1e-7);
   // Initial values have any rates to begin with.
-  const IdaReport start = ida.start_consistently(0.0, Eigen::Vector3d(1.0, 0.5, 0.0), Eigen::Vector3d::Zero(), 0.1);
+  const IdaReport start =
+      ida.start_consistently(0.0, Eigen::Vector3d(1.0, 0.5, 0.0), Eigen::Vector3d::Zero(), 0.1);
   ASSERT_TRUE(start.usable()) << start.message;
   EXPECT_NEAR(ida.rate()[0], 0.5, 1e-9);
   EXPECT_NEAR(ida.rate()[1], -4.0, 1e-9);
@@ -138,7 +141,8 @@ TEST(Ida, FindsConsistentAlgebraicUnknownsAndRates) {
   Oscillator part(2.0);
   DaeSystem system({&part});
   Ida ida(system, tight());
-  const IdaReport report = ida.start_consistently(0.0, Eigen::Vector3d(1.0, 0.5, 0.0), Eigen::Vector3d::Zero(), 0.1);
+  const IdaReport report =
+      ida.start_consistently(0.0, Eigen::Vector3d(1.0, 0.5, 0.0), Eigen::Vector3d::Zero(), 0.1);
   ASSERT_TRUE(report.usable()) << report.message;
   // The Newton iteration for initial values ends at a hundredth of the tolerance of 1e-10.
   EXPECT_NEAR(ida.y()[2], 0.125 + 2.0, 1e-9);
@@ -227,8 +231,9 @@ TEST(Ida, IntegralsAgreeWithWhatIsLinear) {
   loose.newton_test = NewtonTest::every_unknown;
   loose.newton_share = 1e-6;
   loose.cautious_start = true;  // steps in which the event comes late: it is looked back from there
-  Ida ida(system, loose,
-          {2, [](const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates) { rates << at.y[1], at.y[0] * at.y[0]; }});
+  Ida ida(system, loose, {2, [](const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates) {
+                            rates << at.y[1], at.y[0] * at.y[0];
+                          }});
   ida.start(0.0, displaced(), displaced_rate);
   double worst = 0.0;
   double within = 0.0;

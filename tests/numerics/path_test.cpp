@@ -49,7 +49,8 @@ TEST(Bordered, SolvesAsTheWholeMatrixDoes) {
     solver.solve(system, band, border);
     Eigen::VectorXd x(33);
     x << band, border;
-    EXPECT_LE((whole * x - right).norm(), 1e-10 * (1.0 + x.norm()));  // random Schur complements: condition to 1e4
+    EXPECT_LE((whole * x - right).norm(),
+              1e-10 * (1.0 + x.norm()));  // random Schur complements: condition to 1e4
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(33, 33);
     for (int k = 0; k < 33; ++k) dense.col(k) = whole * Eigen::VectorXd::Unit(33, k);
     EXPECT_EQ(solver.determinant_sign(), dense.determinant() > 0.0 ? 1 : -1);

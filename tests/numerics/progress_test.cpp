@@ -12,8 +12,12 @@ namespace {
 /// y' = -y.
 class Decay final : public DaePart {
  public:
-  void declare(DaeLayout& layout) override { first_ = layout.add({"warmth", {}, 1, DaeKind::differential, 1e-9, 0}); }
-  void sparsity(std::vector<std::pair<int, int>>& entries) const override { entries.emplace_back(first_, first_); }
+  void declare(DaeLayout& layout) override {
+    first_ = layout.add({"warmth", {}, 1, DaeKind::differential, 1e-9, 0});
+  }
+  void sparsity(std::vector<std::pair<int, int>>& entries) const override {
+    entries.emplace_back(first_, first_);
+  }
   void attach_pattern(const SparseMatrix& pattern) override { slot_ = pattern.slot(first_, first_); }
   void residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override {
     rows[first_] += at.rate[first_] + at.y[first_];
@@ -76,7 +80,8 @@ TEST_F(ProgressOf, WindowsFollowEachOther) {
   EXPECT_FALSE(progress.add(ida_, Progress::window(1), end, effort));
   EXPECT_EQ(effort.evaluations, 0);
   EXPECT_EQ(effort.since, ida_.time());
-  EXPECT_TRUE(progress.add(ida_, Progress::window(1), end, effort)) << "the second window has brought nothing";
+  EXPECT_TRUE(progress.add(ida_, Progress::window(1), end, effort))
+      << "the second window has brought nothing";
 }
 
 TEST_F(ProgressOf, WhatIsNearlyOverEnds) {

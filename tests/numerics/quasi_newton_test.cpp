@@ -16,7 +16,8 @@ using Eigen::VectorXd;
 using Equations = std::function<VectorXd(const VectorXd& x)>;
 
 /// x after some corrections by the matrix A from x = 0, each corrected by what the ones before have shown, or as it is.
-VectorXd solved(const Equations& F, const MatrixXd& A, const VectorXd& weight, int corrections, bool corrected) {
+VectorXd solved(const Equations& F, const MatrixXd& A, const VectorXd& weight, int corrections,
+                bool corrected) {
   const Eigen::PartialPivLU<MatrixXd> lu(A);
   QuasiNewton method(A.rows(), 12);
   VectorXd x = VectorXd::Zero(A.rows());

@@ -94,7 +94,8 @@ TEST(Klu, DeterminantSignIsThatOfDense) {
   int negative = 0;
   for (int trial = 0; trial < 40; ++trial) {
     std::vector<std::pair<int, int>> entries;
-    for (int i = 0; i < 12; ++i) entries.emplace_back(i, (5 * i + 3) % 12);  // a permutation: structurally regular
+    for (int i = 0; i < 12; ++i)
+      entries.emplace_back(i, (5 * i + 3) % 12);  // a permutation: structurally regular
     for (int k = 0; k < 30; ++k) entries.emplace_back(index(random), index(random));
     SparseMatrix matrix = make_pattern(12, entries);
     for (double& v : matrix.value) v = uniform(random);
@@ -130,7 +131,8 @@ TEST(Cholmod, SolvesAndTellsTheInertia) {
     cholmod.solve(x);
     EXPECT_LE((band * x - b).norm(), 1e-11 * b.norm());
     const Eigen::MatrixXd full = dense(to_sparse(band, Triangle::both));
-    const auto negative = (Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full).eigenvalues().array() < 0.0).count();
+    const auto negative =
+        (Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full).eigenvalues().array() < 0.0).count();
     EXPECT_EQ(cholmod.negative_pivots(), static_cast<int>(negative));
     BandLdlt own;
     ASSERT_TRUE(own.factorize(band));
@@ -146,7 +148,9 @@ NonlinearSystem circle_and_line() {
     f.resize(2);
     f << u[0] * u[0] + u[1] * u[1] - 4.0, u[0] - u[1];
   };
-  system.jacobian = [](const Eigen::VectorXd& u, SparseMatrix& j) { j.value = {2.0 * u[0], 1.0, 2.0 * u[1], -1.0}; };
+  system.jacobian = [](const Eigen::VectorXd& u, SparseMatrix& j) {
+    j.value = {2.0 * u[0], 1.0, 2.0 * u[1], -1.0};
+  };
   return system;
 }
 
@@ -173,12 +177,16 @@ TEST(Kinsol, FailureIsReportedAndExceptionsPassThrough) {
   EXPECT_FALSE(report.message.empty());
 
   NonlinearSystem thrower = circle_and_line();
-  thrower.jacobian = [](const Eigen::VectorXd&, SparseMatrix&) { throw std::runtime_error("from the callback"); };
+  thrower.jacobian = [](const Eigen::VectorXd&, SparseMatrix&) {
+    throw std::runtime_error("from the callback");
+  };
   u << 3.0, 1.0;
   EXPECT_THROW((void)solve_kinsol(thrower, u), std::runtime_error);
 
   NonlinearSystem second = circle_and_line();
-  second.residual = [](const Eigen::VectorXd&, Eigen::VectorXd&) { throw std::out_of_range("from the residual"); };
+  second.residual = [](const Eigen::VectorXd&, Eigen::VectorXd&) {
+    throw std::out_of_range("from the residual");
+  };
   EXPECT_THROW((void)solve_kinsol(second, u), std::out_of_range);
 }
 

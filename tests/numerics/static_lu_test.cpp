@@ -15,7 +15,9 @@ namespace {
 /// Chains of vertices with one to six unknowns each, coupled with the next two, all with a few unknowns in common; some unknowns
 /// stand alone. Rows are dominated by their diagonal.
 SparseMatrix chains(std::mt19937& random) {
-  const auto integer = [&](int least, int most) { return std::uniform_int_distribution<int>(least, most)(random); };
+  const auto integer = [&](int least, int most) {
+    return std::uniform_int_distribution<int>(least, most)(random);
+  };
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::vector<Triplet> list;
   const int common = integer(0, 7);
@@ -61,7 +63,8 @@ TEST(StaticLu, GivesTheDenseSolutionOnAnyPattern) {
       ASSERT_TRUE(lu.factorize(a));
       lu.solve(x);
       // Round-off times a condition of some tens.
-      EXPECT_LT((x - dense(a).lu().solve(b)).norm(), 1e-12 * x.norm()) << "matrix " << k << " of order " << a.order;
+      EXPECT_LT((x - dense(a).lu().solve(b)).norm(), 1e-12 * x.norm())
+          << "matrix " << k << " of order " << a.order;
     }
   }
 }

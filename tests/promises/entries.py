@@ -12,6 +12,7 @@ import argparse
 import collections
 import concurrent.futures
 import pathlib
+import signal
 import sys
 import tempfile
 import time
@@ -35,6 +36,8 @@ def tried(check, entry, verb, template, folder, command):
 
 
 def main():
+    # Runs are interrupted. A background job of a shell ignores SIGINT, and so would its children.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     parser = argparse.ArgumentParser()
     parser.add_argument("snare")
     parser.add_argument("--library")

@@ -258,7 +258,7 @@ def interrupt(t):
 
 def interrupted_sweep_is_kept(t):
     """Keeps the finished cases of an interrupted sweep; the same call resumes it."""
-    cases = 1000 if t.entry.name == "mpi" else 600
+    cases = 4000 if t.entry.name == "mpi" else 600  # mpirun hands a signal on after half a second
     running = t.start(given={"cases": cases})
     journal = t.folder / "out/cases.journal"
     wait_for_cases(running, journal, 20)
@@ -490,21 +490,31 @@ def killed_sweep_resumes(t):
     t.expect(same(whole, again), "another result")
 
 
+def ticks_of_threads(pid):
+    """Returns the processor time of every thread of a process [ticks]."""
+    ticks = {}
+    for task in pathlib.Path(f"/proc/{pid}/task").iterdir():
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+            ticks[int(task.name)] = int((task / "stat").read_text().rsplit(")", 1)[1].split()[11])
+    return ticks
+
+
 def fault_in_busiest_thread(pid):
-    """Sends SIGSEGV to the thread with the most processor time: the one that runs cases."""
+    """Sends SIGSEGV to the thread that uses the most processor time now: the one that runs cases. A rank has another for its messages."""
     with contextlib.suppress(FileNotFoundError, ProcessLookupError, ValueError):
-        tasks = list(pathlib.Path(f"/proc/{pid}/task").iterdir())
-        worked = {int(task.name): int((task / "stat").read_text().rsplit(")", 1)[1].split()[11]) for task in tasks}
+        before = ticks_of_threads(pid)
+        time.sleep(0.15)
+        worked = {thread: ticks - before.get(thread, 0) for thread, ticks in ticks_of_threads(pid).items()}
         tgkill = 234 if os.uname().machine == "x86_64" else 131
         ctypes.CDLL(None).syscall(tgkill, pid, max(worked, key=worked.get), int(signal.SIGSEGV))
 
 
 def fault_is_named(t):
     """Names the case that ended the process by a fault; the same call resumes without that case."""
-    given = {"cases": 1500 if t.entry.name == "mpi" else 300}
+    given = {"cases": 4000 if t.entry.name == "mpi" else 600}
     journal = t.folder / "out/cases.journal"
     said = ""
-    for _ in range(3 if t.entry.name == "mpi" else 8):  # the signal may arrive between two cases
+    for _ in range(5 if t.entry.name == "mpi" else 8):  # the signal may arrive between two cases
         running = t.start(given=given, threads=1)
         wait_for_cases(running, journal, lines_of(journal) + 10)
         ranks = running.children()

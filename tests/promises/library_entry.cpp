@@ -32,7 +32,8 @@ void note_places(const nlohmann::json& value, const std::string& place, nlohmann
 }  // namespace
 
 int main(int count, char** arguments) {
-  using Verb = std::function<nlohmann::json(const std::string&, const snare::Overrides&, const snare::results::Watch&)>;
+  using Verb = std::function<nlohmann::json(const std::string&, const snare::Overrides&,
+                                            const snare::results::Watch&)>;
   const std::map<std::string, Verb> verbs{{"push", snare::push},
                                           {"fit", snare::fit},
                                           {"trace", snare::trace},
@@ -50,9 +51,11 @@ int main(int count, char** arguments) {
     }
   }
   std::signal(SIGINT, [](int) { asked_to_stop = true; });
-  nlohmann::json ending{{"status", 0}, {"message", ""}, {"document", nullptr}, {"not_finite", nlohmann::json::array()}};
+  nlohmann::json ending{
+      {"status", 0}, {"message", ""}, {"document", nullptr}, {"not_finite", nlohmann::json::array()}};
   try {
-    ending["document"] = verbs.at(arguments[1])(arguments[2], overrides, {{}, [] { return asked_to_stop.load(); }});
+    ending["document"] =
+        verbs.at(arguments[1])(arguments[2], overrides, {{}, [] { return asked_to_stop.load(); }});
     note_places(ending["document"], "", ending["not_finite"]);
   } catch (const snare::base::InputError& error) {
     ending["status"] = 2;

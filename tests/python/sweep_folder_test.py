@@ -1,5 +1,6 @@
 """A folder that a sweep writes into is refused to others, whoever they are; documents name what was read."""
 
+import fcntl
 import hashlib
 import pathlib
 import subprocess
@@ -54,13 +55,28 @@ class Folders(unittest.TestCase):
         thread = threading.Thread(target=first)
         thread.start()
         self.assertTrue(began.wait(60.0))
-        with self.assertRaisesRegex(ValueError, "another run is writing into this folder"):
+        with self.assertRaisesRegex(ValueError, "is writing into this one"):
             snare.sweep(self.sweep, out=self.out)
         command = subprocess.run([setting.COMMAND, "sweep", self.sweep, "--out", self.out], capture_output=True, text=True)
         self.assertEqual(command.returncode, 2, command.stderr)
-        self.assertIn("another run is writing into this folder", command.stderr)
+        self.assertRegex(command.stderr, r"snare.sweep .*is writing into this one")
         over.set()
         thread.join()
+
+    def test_the_folder_of_a_command_is_left_alone(self):
+        self.out.mkdir()
+        with open(self.out / ".snare.lock", "w", encoding="utf-8") as lock:
+            lock.write("snare push other.toml (process 12)\n")
+            lock.flush()
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            with self.assertRaisesRegex(snare.InputError, r"out = .*: snare push other.toml \(process 12\) is writing into this one"):
+                snare.sweep(self.sweep, out=self.out)
+        self.assertEqual([file.name for file in self.out.iterdir()], [".snare.lock"])
+
+    def test_a_rejected_sweep_leaves_nothing(self):
+        with self.assertRaisesRegex(snare.InputError, "nowhere"):
+            snare.sweep(self.sweep, out=self.out / "below", set={"collect.force": "nowhere", "cases": 3})
+        self.assertFalse(self.out.exists())
 
     def test_documents_name_their_inputs(self):
         document = snare.push(self.case)

@@ -39,7 +39,8 @@ TEST(ErrorReason, SaysWhereTheForceComesTooLateOrEarly) {
   // A law that counts from where the wire is taut.
   EXPECT_EQ(reason_of([](double d) { return d < 1e-3 ? 0.0 : wire_force(d - 1e-3); }),
             "its force comes 1 mm of travel too late");
-  EXPECT_EQ(reason_of([](double d) { return wire_force(d + 0.5e-3); }), "its force comes 0.5 mm of travel too early");
+  EXPECT_EQ(reason_of([](double d) { return wire_force(d + 0.5e-3); }),
+            "its force comes 0.5 mm of travel too early");
 }
 
 TEST(ErrorReason, SaysWhatIsOffEverywhere) {
@@ -53,9 +54,9 @@ TEST(ErrorReason, SaysThatAStraightLineIsOfAnotherForm) {
 }
 
 TEST(ErrorReason, SaysOnWhichSideOfTheWireAModelIs) {
-  EXPECT_EQ(
-      reason_of([](double) { return 20.0; }),
-      "of another form: above the wire at first and in the middle, below the wire at the end, farthest off at 0 mm");
+  EXPECT_EQ(reason_of([](double) { return 20.0; }),
+            "of another form: above the wire at first and in the middle, below the wire at the end, farthest "
+            "off at 0 mm");
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ TEST(ImpactDamping, LinearSpringDashpotReturnsAsPublished) {
   for (const double c : {1.0, 20.0, 100.0}) {
     const double beta = 0.5 * c / mass;
     const double q = std::sqrt(k / mass - beta * beta);
-    const double closed = std::exp(-beta / q * (std::numbers::pi - std::atan2(2.0 * beta * q, q * q - beta * beta)));
+    const double closed =
+        std::exp(-beta / q * (std::numbers::pi - std::atan2(2.0 * beta * q, q * q - beta * beta)));
     const LawRebound found = rebound(law, c, mass, 0.2);
     EXPECT_NEAR(found.restitution, closed, 1e-6) << c;  // the last step is not cut at the parting
     EXPECT_NEAR(damping_of_restitution(law, closed, mass, 0.2), c, 1e-5 * c);

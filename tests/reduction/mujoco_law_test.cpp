@@ -44,7 +44,8 @@ TEST(MujocoLaw, SpringsAreTheCurveAndItsTangent) {
 
 TEST(MujocoLaw, TheLinearFormIsTheGivenOneOrTheLeastSquares) {
   EXPECT_DOUBLE_EQ(mujoco_law(0.09, curve(1.0), 4321.0, {}).linear_stiffness, 4321.0);
-  const numerics::HermiteCurve straight({0.0, 0.5 * end, end}, {0.0, 1.5, 3.0}, {3.0 / end, 3.0 / end, 3.0 / end});
+  const numerics::HermiteCurve straight({0.0, 0.5 * end, end}, {0.0, 1.5, 3.0},
+                                        {3.0 / end, 3.0 / end, 3.0 / end});
   const MujocoLaw law = mujoco_law(0.09, straight, std::nullopt, {});
   EXPECT_NEAR(law.linear_stiffness, 3.0 / end, 1e-9);
   EXPECT_NEAR(law.linear_error, 0.0, 1e-12);

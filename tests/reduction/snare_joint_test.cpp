@@ -44,8 +44,10 @@ TEST(SnaredShaft, IsIsotropicInItsPlane) {
 
 // A wire and the mirror image of the way.
 TEST(SnaredShaft, MirrorsInX) {
-  const coupling::ShaftPath right = coupling::move_shaft(small_snare(0.1), {{1e-3, 0.0, 0.0}, {2e-3, 0.0, 0.0}});
-  const coupling::ShaftPath left = coupling::move_shaft(small_snare(0.1), {{-1e-3, 0.0, 0.0}, {-2e-3, 0.0, 0.0}});
+  const coupling::ShaftPath right =
+      coupling::move_shaft(small_snare(0.1), {{1e-3, 0.0, 0.0}, {2e-3, 0.0, 0.0}});
+  const coupling::ShaftPath left =
+      coupling::move_shaft(small_snare(0.1), {{-1e-3, 0.0, 0.0}, {-2e-3, 0.0, 0.0}});
   ASSERT_EQ(right.points.size(), 2u);
   ASSERT_EQ(left.points.size(), 2u);
   const Eigen::Vector3d f = right.points.back().force;

@@ -29,9 +29,9 @@ TEST(TableBuilder, StatedBoundHoldsAtRandomPoints) {
   ASSERT_TRUE(fresh.sample(places).usable());
   for (const CurvePlace& place : places) {
     for (std::size_t k = 0; k < fresh.travel().size(); ++k) {
-      EXPECT_LE(
-          std::abs(built.loading->force(fresh.travel()[k], place.position, place.slack) - fresh.at(place).loading[k]),
-          built.loading_error.bound);
+      EXPECT_LE(std::abs(built.loading->force(fresh.travel()[k], place.position, place.slack) -
+                         fresh.at(place).loading[k]),
+                built.loading_error.bound);
     }
   }
 }
@@ -69,7 +69,8 @@ TEST(SlowTable, AThousandRandomPoints) {
 TEST(CurveStore, ATornJournalGivesTheSameCurves) {
   const WireFile file = small_wire();
   const WireCase& wire = file.cases.front();
-  const std::filesystem::path journal = std::filesystem::temp_directory_path() / "snare_reduction_test.journal";
+  const std::filesystem::path journal =
+      std::filesystem::temp_directory_path() / "snare_reduction_test.journal";
   std::filesystem::remove(journal);
   const std::vector<CurvePlace> places{{0.05, 4e-4}, {0.06, 5e-4}, {0.08, 6e-4}};
   CurveStore first(wire, file.settings, sampling_travel(wire, file.settings), journal);

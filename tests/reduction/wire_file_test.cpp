@@ -33,7 +33,8 @@ positions_mm = [0.1]
   using testing::HasSubstr;
   EXPECT_THAT(said, HasSubstr("w.toml:25: table.tolerance = 2.0, must be >= 1e-05 and <= 0.5"));
   EXPECT_THAT(said, HasSubstr("w.toml:27: ranges.travel_mm = -1.0, must be >= 1e-06 and <= 1000"));
-  EXPECT_THAT(said, HasSubstr("ranges.position_mm = [90.0, 40.0], must be [low, high] with low < high, or [value]"));
+  EXPECT_THAT(
+      said, HasSubstr("ranges.position_mm = [90.0, 40.0], must be [low, high] with low < high, or [value]"));
   EXPECT_THAT(said, HasSubstr("ranges.slack_mm = [1.0, 2.0], must contain that of the wire, 0.49 mm"));
   EXPECT_THAT(said, HasSubstr("frction"));
   EXPECT_THAT(said, HasSubstr("did you mean friction"));

@@ -99,8 +99,8 @@ TEST(ArmScenarios, LiteralTable2AtAllJointsRunsThrough) {
     joint.spring = multibody::DeflectionLaw({{0.0, 12.5 / degree, 48.9 / degree},
                                              {0.04 * degree, 475.0 / degree, 87.3 / degree},
                                              {0.06 * degree, 475.0 / degree, 17.6 / degree}},
-                                            multibody::StiffnessReading::literal, multibody::DampingRate::deflection,
-                                            4e-4 * degree);
+                                            multibody::StiffnessReading::literal,
+                                            multibody::DampingRate::deflection, 4e-4 * degree);
   }
   auto run = scenario::joint_step(arm, arm.poses[1].angles, 2, 0.5 * degree, 20.0);
   run.ida.relative_tolerance = 1e-6;

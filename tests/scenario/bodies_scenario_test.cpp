@@ -146,7 +146,9 @@ TEST_F(MotionScenarios, ReadEveryKindOfShape) {
   ASSERT_EQ(s.motion.wires.size(), 1u);
   ASSERT_EQ(s.motion.bodies.size(), 2u);
   ASSERT_EQ(s.motion.contacts.size(), 11u);
-  const auto shape = [&s](std::size_t k) -> const coupling::ContactShape& { return *s.motion.contacts[k].shape; };
+  const auto shape = [&s](std::size_t k) -> const coupling::ContactShape& {
+    return *s.motion.contacts[k].shape;
+  };
   EXPECT_NEAR(shape(0).distance({0.0, 4e-3, 5e-3}), 4e-3, 1e-15);
   EXPECT_NEAR(shape(1).distance({0.0, 7e-3, 8e-3}), 5e-3, 1e-15);
   EXPECT_NEAR(shape(2).distance({0.0, 7e-3, 0.0}), 4e-3, 1e-15);
@@ -197,7 +199,8 @@ TEST_F(MotionScenarios, WiresHaveFortyElementsOfHigherOrderWhereNothingIsNamed) 
   const std::string named = "elements = 20\n";
   text.erase(text.find(named), named.size());
   write("unnamed.toml", text);
-  const wire::RodInMotion rod = read_scenario(path("unnamed.toml"), {}).motions.runs.at(0).motion.wires.at(0).rod;
+  const wire::RodInMotion rod =
+      read_scenario(path("unnamed.toml"), {}).motions.runs.at(0).motion.wires.at(0).rod;
   EXPECT_EQ(rod.elements, 40);
   EXPECT_EQ(rod.formulation, wire::Formulation::higher_order);
   const wire::RodInMotion plain = read({"wires[a].formulation=\"vertices\""}).motion.wires.at(0).rod;
@@ -214,7 +217,8 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"body.mass_kg=1", "body, unknown key"},
       {"wires[a].diameter_mm=0", "wires[a].diameter_mm = 0, must be > 0"},
       {"wires[a].length_mm=90", "wires[a].length_mm = 90, must be >= 98.01"},
-      {"wires[a].to_mm=[0.0, 0.0, 0.0]", "wires[a].to_mm = [0.0, 0.0, 0.0], must not be where the wire begins"},
+      {"wires[a].to_mm=[0.0, 0.0, 0.0]",
+       "wires[a].to_mm = [0.0, 0.0, 0.0], must not be where the wire begins"},
       {"wires[a].bulge=[0.0, 0.0, 1.0]",
        "wires[a].bulge = [0.0, 0.0, 1.0], must have a bulge, a direction across the chord"},
       {"wires[a].mount=\"supports\"", "wires[a].mount = \"supports\", must be \"clamped\" or \"pinned\""},
@@ -223,7 +227,8 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
       {"wires[a].formulation=\"cubic\"", "wires[a].formulation = \"cubic\", must be \"vertices\""},
       {"bodies[target].mass_kg=0", "bodies[target].mass_kg = 0, must be > 0"},
       {"bodies[target].inertia_kg_m2=[1.0, 1.0, 3.0]", "triangle inequality"},
-      {"bodies[machine].mass_kg=1", "bodies[machine].mass_kg = 1, a driven body moves at a constant velocity_m_s"},
+      {"bodies[machine].mass_kg=1",
+       "bodies[machine].mass_kg = 1, a driven body moves at a constant velocity_m_s"},
       {"bodies[machine].name=\"target\"", "is taken by another body"},
       {"shapes[ball].body=\"moon\"",
        "shapes[ball].body = \"moon\", must be the name of a frame: \"machine\", \"target\", \"world\""},
@@ -259,18 +264,24 @@ TEST_F(MotionScenarios, SayWhatIsWrong) {
   const std::string said = test::refusal([&] { return read({"shapes[box].file=\"hole.obj\""}); });
   EXPECT_THAT(said, HasSubstr("shapes[box].file = \"hole.obj\""));
   EXPECT_THAT(
-      said, HasSubstr("hole.obj: mesh edge of points 3, 5 = triangle 10, must have a triangle on its other side too"));
+      said,
+      HasSubstr(
+          "hole.obj: mesh edge of points 3, 5 = triangle 10, must have a triangle on its other side too"));
 }
 
 // A box of 8 mm whose file is in metres is 8 um large by the unit that the scenario states.
 TEST_F(MotionScenarios, MeshesOfAnotherUnitAreDoubted) {
-  const auto warned = [&](const std::string& unit) { return read({"shapes[box].unit=\"" + unit + "\""}).warnings; };
+  const auto warned = [&](const std::string& unit) {
+    return read({"shapes[box].unit=\"" + unit + "\""}).warnings;
+  };
   test::write_mesh(path("box.stl"), test::cuboid(8e-3, 6e-3, 4e-3), 1.0);
-  EXPECT_THAT(warned("mm"), Contains(HasSubstr("shape box: its mesh is only 0.008 mm large: is the file in metres")));
+  EXPECT_THAT(warned("mm"),
+              Contains(HasSubstr("shape box: its mesh is only 0.008 mm large: is the file in metres")));
   EXPECT_THAT(warned("m"), Not(Contains(HasSubstr("mesh"))));
   test::write_mesh(path("box.stl"), test::cuboid(1.0, 0.6, 0.4), 1e-3);
   EXPECT_THAT(warned("mm"), Not(Contains(HasSubstr("mesh"))));
-  EXPECT_THAT(warned("m"), Contains(HasSubstr("shape box: its mesh is 1e+03 m large: is the file in millimetres")));
+  EXPECT_THAT(warned("m"),
+              Contains(HasSubstr("shape box: its mesh is 1e+03 m large: is the file in millimetres")));
 }
 
 const fs::path net = fs::path(SNARE_SOURCE_DIR) / "data/scenarios/ball_into_net.toml";

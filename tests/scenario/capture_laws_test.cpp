@@ -103,7 +103,8 @@ wire = "snare::wire_2"
 
 class CaptureLaws : public test::FolderFixture {
  protected:
-  [[nodiscard]] WireMotions read(const std::vector<std::string>& settings, const std::string& text = with_laws) {
+  [[nodiscard]] WireMotions read(const std::vector<std::string>& settings,
+                                 const std::string& text = with_laws) {
     std::ofstream(folder_ / "case.toml") << text;
     return read_file(folder_ / "case.toml", settings);
   }
@@ -136,8 +137,8 @@ TEST_F(CaptureLaws, PutEverythingWhereItBelongs) {
   const coupling::Motion rods = read({"snares[snare].wire.model=\"rod\""}).runs.front().motion;
   // Eq. 1 with its numbers: F = 2 K (1 - l/sqrt(l^2 + 2 h x + x^2)) (h + x), h = sqrt(l^2 - L^2).
   const double h = std::sqrt(0.01 - 0.099 * 0.099), x = 2e-3;
-  EXPECT_NEAR(rods.law_wires[0].law(x, 0.0).x(), 1e6 * (1.0 - 0.1 / std::sqrt(0.01 + 2.0 * h * x + x * x)) * (h + x),
-              1e-9);
+  EXPECT_NEAR(rods.law_wires[0].law(x, 0.0).x(),
+              1e6 * (1.0 - 0.1 / std::sqrt(0.01 + 2.0 * h * x + x * x)) * (h + x), 1e-9);
   EXPECT_NEAR(rods.law_wires[0].standoff, h, 1e-15);
 }
 
@@ -146,14 +147,17 @@ TEST_F(CaptureLaws, SayWhatIsWrong) {
       {"snares[snare].wire.model=\"spring\"",
        "must be \"full\", \"quasi_static\", \"stretched\", \"rod\" or \"rod_linear\""},
       {"snares[snare].wire.rod.half_length_mm=90", "must be >= half_span_mm"},
-      {"snares[snare].wire.rod.half_stiffness_N_m=0", "snares[snare].wire.rod.half_stiffness_N_m = 0, must be > 0"},
+      {"snares[snare].wire.rod.half_stiffness_N_m=0",
+       "snares[snare].wire.rod.half_stiffness_N_m = 0, must be > 0"},
       {"snares[snare].wire.rod.damping_Ns_m=-1", "must be >= 0"},
       {"snares[snare].wires=0", "cannot stand beside wires = 0"},
-      {"shapes[pin].kind=\"sphere\"", "must be a capsule, knife_edge, cylinder or grapple_shaft to meet snare::wire_1"},
+      {"shapes[pin].kind=\"sphere\"",
+       "must be a capsule, knife_edge, cylinder or grapple_shaft to meet snare::wire_1"},
       {"shapes[pin].wires=[]", "must have one that snare::wire_1 meets, for which a law stands"},
       {"shapes[plate].wires=[\"snare::wire_3\"]",
        "must not have snare::wire_3, for which a law stands: it meets pin already"},
-      {"bushings[tie].neutral=\"middle\"", "bushings[tie].neutral = \"middle\", must be \"start\" or \"frames\""},
+      {"bushings[tie].neutral=\"middle\"",
+       "bushings[tie].neutral = \"middle\", must be \"start\" or \"frames\""},
       {"contacts[plate on face].model=\"glue\"", "must be \"spring_dashpot\", \"power\" or \"step_damped\""},
       {"contacts[plate on face].shape=\"disc\"", "must be the name of a shape: \"pin\", \"face\", \"plate\""},
       {"contacts[plate on face].other_shape=\"face\"", "must be carried by something else than the first"},
@@ -185,11 +189,11 @@ TEST_F(CaptureLaws, LoadsComeFromATableToo) {
          "0.011,1\n0.013,1\n";
   const auto velocity = [](const WireMotions& motions) {
     Vector3d v;
-    const coupling::MotionResult r =
-        coupling::simulate(motions.runs[0].motion, motions.runs[0].options, [&](const coupling::MotionSample& s) {
-          v = s.bodies[0].velocity;
-          return false;
-        });
+    const coupling::MotionResult r = coupling::simulate(motions.runs[0].motion, motions.runs[0].options,
+                                                        [&](const coupling::MotionSample& s) {
+                                                          v = s.bodies[0].velocity;
+                                                          return false;
+                                                        });
     EXPECT_TRUE(r.report.usable()) << r.report.message;
     EXPECT_LT(r.momentum_error.norm(), 1e-9);
     return v;
@@ -201,14 +205,14 @@ TEST_F(CaptureLaws, LoadsComeFromATableToo) {
 
 // The shipped capture with strings in place of its wires: caught, in the order of the full wires (see the file), and the balances.
 TEST_F(CaptureLaws, StringsCatchAsTheWiresDo) {
-  const WireMotions motions =
-      read_file(shipped / "ssrms_htv_capture.toml", {"snares[snare].wire.model=\"stretched\"", "duration_s=4.0"});
+  const WireMotions motions = read_file(shipped / "ssrms_htv_capture.toml",
+                                        {"snares[snare].wire.model=\"stretched\"", "duration_s=4.0"});
   std::vector<coupling::MotionSample> samples;
-  const coupling::MotionResult r =
-      coupling::simulate(motions.runs[0].motion, motions.runs[0].options, [&](const coupling::MotionSample& s) {
-        samples.push_back(s);
-        return false;
-      });
+  const coupling::MotionResult r = coupling::simulate(motions.runs[0].motion, motions.runs[0].options,
+                                                      [&](const coupling::MotionSample& s) {
+                                                        samples.push_back(s);
+                                                        return false;
+                                                      });
   ASSERT_TRUE(r.report.usable()) << r.report.message;
   EXPECT_TRUE(outcome_of(*motions.capture, motions.runs[0].motion, samples).caught);
   EXPECT_LT(std::abs(r.energy.integrator), 1e-3 * r.energy.work);

@@ -62,7 +62,8 @@ TEST(Carried, ADragAgainstTheWorldNeedsAWireThatStands) {
 TEST(Carried, CaptureKeepsItsBalances) {
   for (const char* name : {"jemrms_capture.toml", "jemrms_payload_on_wire.toml"}) {
     const NamedMotion asked = run_of(
-        name, {"wires[wire].elements=24", "bodies[payload].position_mm=[-10.0, -487.96, 0.0]", "duration_s=0.05"});
+        name,
+        {"wires[wire].elements=24", "bodies[payload].position_mm=[-10.0, -487.96, 0.0]", "duration_s=0.05"});
     const Eigen::VectorXd start = asked.motion.arms[0].start.v;
     double arm_moved = 0.0;
     const coupling::MotionResult result =
@@ -110,9 +111,10 @@ TEST(Carried, AnArmAloneMovesAsByItself) {
   const multibody::ArmDescription ssrms = multibody::read_arm(arms / "ssrms_like.toml");
   Eigen::VectorXd pose(7);
   pose << 0, 0, 30, -60, 30, 0, 0;
-  EXPECT_NEAR(largest("ssrms_push.toml", 5) /
-                  alone(tip_impulse(ssrms, pose * EIGEN_PI / 180.0, Hold::limp, {0.0, 20.0, 0.0}, 0.1, 3.0), 5, 0.02),
-              1.0, 1e-3);
+  EXPECT_NEAR(
+      largest("ssrms_push.toml", 5) /
+          alone(tip_impulse(ssrms, pose * EIGEN_PI / 180.0, Hold::limp, {0.0, 20.0, 0.0}, 0.1, 3.0), 5, 0.02),
+      1.0, 1e-3);
 }
 
 // Mounts that give are parts of the motion, wherever they stand; what the wire itself gives in its mount is its end cell's.

@@ -32,7 +32,8 @@ frame = "pad"
   }
 };
 
-constexpr const char* inertia = "mass_kg = 5.0\ninertia_kg_m2 = [1.0, 2.0, 2.5]\nrotation_deg = [0.0, 0.0, 90.0]\n";
+constexpr const char* inertia =
+    "mass_kg = 5.0\ninertia_kg_m2 = [1.0, 2.0, 2.5]\nrotation_deg = [0.0, 0.0, 90.0]\n";
 
 // The frame at the origin with the centre 100 mm along x, and the frame at the centre: v + w x c is 0.01 m/s less along the pad's x.
 TEST_F(CentreOfMass, IsTheSameBodyAsOneThatIsPlacedByIt) {
@@ -40,10 +41,10 @@ TEST_F(CentreOfMass, IsTheSameBodyAsOneThatIsPlacedByIt) {
       read(std::string(inertia) +
                "com_mm = [100.0, 0.0, 0.0]\nvelocity_m_s = [1.0, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.1]\n",
            "");
-  const coupling::Motion centred =
-      read(std::string(inertia) +
-               "position_mm = [0.0, 100.0, 0.0]\nvelocity_m_s = [0.99, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.1]\n",
-           "position_mm = [-100.0, 0.0, 0.0]\n");
+  const coupling::Motion centred = read(
+      std::string(inertia) +
+          "position_mm = [0.0, 100.0, 0.0]\nvelocity_m_s = [0.99, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.1]\n",
+      "position_mm = [-100.0, 0.0, 0.0]\n");
   const multibody::RigidBodyState &a = aside.bodies.at(0).start, &b = centred.bodies.at(0).start;
   EXPECT_LT((a.position - b.position).norm(), 1e-15);
   EXPECT_LT((a.velocity - b.velocity).norm(), 1e-15);

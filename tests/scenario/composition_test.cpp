@@ -161,7 +161,8 @@ class Compositions : public test::FolderFixture {
     return read_scenario(folder_ / "case.toml", test::overrides(settings)).motions;
   }
   /// The text with one piece in place of another, which it must have once.
-  static std::string with(const std::string& piece, const std::string& other, std::string text = one_of_everything) {
+  static std::string with(const std::string& piece, const std::string& other,
+                          std::string text = one_of_everything) {
     const std::size_t found = text.find(piece);
     EXPECT_NE(found, std::string::npos) << piece;
     if (found != std::string::npos) text.replace(found, piece.size(), other);
@@ -183,7 +184,8 @@ TEST_F(Compositions, WiresOfASnareAreCountedTheSameWhicheverWayItCloses) {
 }
 
 TEST_F(Compositions, ShapesWithoutAFrameStandOnTheWorld) {
-  EXPECT_NO_THROW(static_cast<void>(read({}, with("name = \"pin\"\nframe = \"shaft\"\n", "name = \"pin\"\n"))));
+  EXPECT_NO_THROW(
+      static_cast<void>(read({}, with("name = \"pin\"\nframe = \"shaft\"\n", "name = \"pin\"\n"))));
 }
 
 TEST_F(Compositions, PutEverythingWhereItBelongs) {
@@ -280,16 +282,20 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {"duration_s=0", "duration_s = 0, must be > 0"},
       {"output_interval_s=-1", "output_interval_s = -1, must be > 0"},
       {"arms[rms].file=\"none.toml\"", "none.toml"},
-      {"arms[rms].pose=\"bend\"", "arms[rms].pose = \"bend\", must be a pose of the arm: \"straight\", \"bent\""},
-      {"arms[rms].hold=\"free\"", "arms[rms].hold = \"free\", must be \"as_described\", \"limp\" or \"locked\""},
+      {"arms[rms].pose=\"bend\"",
+       "arms[rms].pose = \"bend\", must be a pose of the arm: \"straight\", \"bent\""},
+      {"arms[rms].hold=\"free\"",
+       "arms[rms].hold = \"free\", must be \"as_described\", \"limp\" or \"locked\""},
       {"arms[rms].base_frame=\"moon\"", "arms[rms].base_frame = \"moon\", must be the name of a frame: "},
       {"arms[rms].base_frame=\"counterweight\"", "must stand still"},
       {"arms[rms].tip_frame=\"pad\"", "cannot stand beside base_frame"},
       {"arms[rms].held_joints=[\"joint_1\"]", "held_joints = [\"joint_1\"], only beside reach_frame"},
-      {"arms[rms].reach_frame=\"visitor\"", "bodies[visitor].frame = \"snare::fixed\", must not stand on itself"},
+      {"arms[rms].reach_frame=\"visitor\"",
+       "bodies[visitor].frame = \"snare::fixed\", must not stand on itself"},
       {"arms[rms].base_mm=[1.0]", "arms[rms].base_mm = [1.0], must be an array of 3 numbers"},
       {"arms[rms].name=\"a::b\"", "must not have \"::\""},
-      {"bodies[visitor].name=\"<b>\"", "must be 1 to 64 letters, digits, spaces or \"_-.+()\", the first a letter"},
+      {"bodies[visitor].name=\"<b>\"",
+       "must be 1 to 64 letters, digits, spaces or \"_-.+()\", the first a letter"},
       {"sensors[gyro].name=\"../gyro\"", "must be 1 to 64 letters"},
       {"snares[snare].wire.torsional_stiffness_Nm2=1e-9",
        "must leave a quasi-static wire a torsional stiffness of at least 0.001 of its bending stiffness"},
@@ -304,7 +310,8 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {"snares[snare].frame=\"counterweight\"", "must be fixed in the world or on an arm"},
       {"snares[snare].frame=\"visitor\"",
        "snares[snare].frame = \"visitor\", must not stand on itself by way of others"},
-      {"snares[snare].frame=\"rms::thumb\"", "snares[snare].frame = \"rms::thumb\", must be the name of a frame"},
+      {"snares[snare].frame=\"rms::thumb\"",
+       "snares[snare].frame = \"rms::thumb\", must be the name of a frame"},
       {"snares[snare].ring_radius_mm=0", "snares[snare].ring_radius_mm = 0, must be > 0"},
       {"snares[snare].wires=4", "snares[snare].heights_mm = [-4.0, 0.0, 4.0], must be an array of 4 numbers"},
       {"snares[snare].wires=-1", "snares[snare].wires = -1"},
@@ -334,10 +341,13 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {"wires[tether].to_frame=\"none\"", "wires[tether].to_frame = \"none\", must be the name of a frame"},
       {"wires[tether].to_mm=[2000.0,0.0,0.0]", "must not be where the wire begins"},
       {"damping.mass_rate_1_s=1", "damping.mass_rate_1_s = 1, must be 0: it drags against the world"},
-      {"bushings[gf].other_frame=\"visitor\"", "bushings[gf].other_frame = \"visitor\", must be another frame"},
-      {"bushings[gf].translational_stiffness_N_m=-1", "bushings[gf].translational_stiffness_N_m = -1, must be >= 0"},
+      {"bushings[gf].other_frame=\"visitor\"",
+       "bushings[gf].other_frame = \"visitor\", must be another frame"},
+      {"bushings[gf].translational_stiffness_N_m=-1",
+       "bushings[gf].translational_stiffness_N_m = -1, must be >= 0"},
       {"bushings[gf].rotational_stiffness_Nm_rad=[1.0,2.0]", "must be an array of 3 numbers"},
-      {"welds[ballast].body=\"moon\"", "welds[ballast].body = \"moon\", must be the name of a body: \"visitor\""},
+      {"welds[ballast].body=\"moon\"",
+       "welds[ballast].body = \"moon\", must be the name of a body: \"visitor\""},
       {"welds[ballast].frame=\"counterweight\"",
        "welds[ballast].frame = \"counterweight\", must not be on the body itself"},
       {"drives[1].joint=\"rms::elbow\"", "must be a joint, or an arm or a snare for all of theirs: "},
@@ -375,7 +385,9 @@ TEST_F(Compositions, SayWhatIsWrong) {
   };
   test::expect_refused(wrong, [&](const char* setting) { return read({setting}); });
   EXPECT_NO_THROW((void)read({"frames[shaft].rpy_deg=[0,0,1]"}));
-  const auto reaching = [](const std::string& how) { return with("pose = \"bent\"", "pose = \"bent\"\nreach_" + how); };
+  const auto reaching = [](const std::string& how) {
+    return with("pose = \"bent\"", "pose = \"bent\"\nreach_" + how);
+  };
   const auto sensing = [](const std::string& how) {
     return with("{ tension = \"snare::wire_2\", above_N = 5.0 }", "{ " + how + " }");
   };
@@ -385,12 +397,14 @@ TEST_F(Compositions, SayWhatIsWrong) {
   };
   const std::pair<std::string, const char*> texts[] = {
       {with("[[welds]]\nname = \"ballast\"\nbody = \"counterweight\"\nframe = \"visitor\"",
-            "[[welds]]\nname = \"a\"\nbody = \"counterweight\"\nframe = \"fixture\"\n[[welds]]\nname = \"b\"\nbody = "
+            "[[welds]]\nname = \"a\"\nbody = \"counterweight\"\nframe = \"fixture\"\n[[welds]]\nname = "
+            "\"b\"\nbody = "
             "\"counterweight\"\nframe = \"visitor\""),
        "is welded already: two welds would hold six freedoms twice"},
-      {with("body = \"counterweight\"\nframe = \"visitor\"",
-            "body = \"visitor\"\nframe = \"fixture\"\n[[welds]]\nname = \"back\"\nbody = \"fixture\"\nframe = "
-            "\"visitor\""),
+      {with(
+           "body = \"counterweight\"\nframe = \"visitor\"",
+           "body = \"visitor\"\nframe = \"fixture\"\n[[welds]]\nname = \"back\"\nbody = \"fixture\"\nframe = "
+           "\"visitor\""),
        "must not hold each other in a circle"},
       {with("[[drives]]", "[[drives]]\njoint = \"rms\"\nmode = \"locked\"\n[[drives]]"), "is driven already"},
       {with("{ touch = [\"pin on snare::wire_1\"] }", "{ above_N = 1.0 }"),
@@ -400,19 +414,25 @@ TEST_F(Compositions, SayWhatIsWrong) {
       {reaching("frame = \"moon\""), "arms[rms].reach_frame = \"moon\", must be the name of a frame: "},
       {reaching("frame = \"counterweight\"\nheld_joints = [\"joint_9\"]"),
        "arms[rms].held_joints[1] = \"joint_9\", must be a joint of the arm: \"joint_1\""},
-      {reaching("frame = \"counterweight\"\nheld_joints = [\"joint_1\"]"), "needs six joints that move, there are 5"},
+      {reaching("frame = \"counterweight\"\nheld_joints = [\"joint_1\"]"),
+       "needs six joints that move, there are 5"},
       {with("base_frame = \"pad\"\nbase_mm = [100.0, 0.0, 0.0]",
             "reach_frame = \"pad\"\ntip_frame = \"counterweight\""),
        "arms[rms].reach_frame = \"pad\", cannot stand beside tip_frame, by which the base follows"},
       {sensing("sensor = \"radar\""), "must be a sensor: \"gyro\", \"ring_torque\""},
-      {sensing("sensor = \"gyro\", axis = \"w\", above_deg_s = 5.0"), "axis = \"w\", must be \"x\", \"y\" or \"z\""},
-      {sensing("sensor = \"ring_torque\", axis = \"x\", above_Nm = 5.0"), "only of a sensor that reads three numbers"},
+      {sensing("sensor = \"gyro\", axis = \"w\", above_deg_s = 5.0"),
+       "axis = \"w\", must be \"x\", \"y\" or \"z\""},
+      {sensing("sensor = \"ring_torque\", axis = \"x\", above_Nm = 5.0"),
+       "only of a sensor that reads three numbers"},
       {sensing("sensor = \"gyro\", axis = \"x\""), "must have either above_deg_s or below_deg_s"},
       {robot("mass_kg = 5.0\ndelay_s = 0.001\ncontacts = [\"pin on snare::wire_1\"]"),
        "must be contacts of this body: \"pin on snare::wire_1\" is between others"},
-      {robot("mass_kg = 5.0\ndelay_s = 0.0\ncontacts = [\"pin on tether\"]"), "robot.delay_s = 0.0, must be > 0"},
-      {robot("mass_kg = 5.0\ndelay_s = 0.001"), "must name the contacts whose force on the body the robot measures"},
-      {"schema = \"snare-scenario/2\"\ntitle = \"nothing\"\nduration_s = 1.0\n", "must list something that moves"},
+      {robot("mass_kg = 5.0\ndelay_s = 0.0\ncontacts = [\"pin on tether\"]"),
+       "robot.delay_s = 0.0, must be > 0"},
+      {robot("mass_kg = 5.0\ndelay_s = 0.001"),
+       "must name the contacts whose force on the body the robot measures"},
+      {"schema = \"snare-scenario/2\"\ntitle = \"nothing\"\nduration_s = 1.0\n",
+       "must list something that moves"},
       {"schema = \"snare-scenario/3\"\ntitle = \"later\"\n", "must be \"snare-scenario/2\""},
   };
   for (const auto& one : texts) {

@@ -89,9 +89,10 @@ rotation_deg = [13.958985, 10.611458, 0.0]
 // A block that falls 12 um on to a ramp of 10 degrees slides until it is carried, by micrometres, and then rests: friction is 0.5. What lies
 // there has touched once.
 TEST_F(Dissipation, OfABlockThatRestsOnARampEnds) {
-  for (const char* model : {"model = \"spring_dashpot\"\nk_N_m = 1e5\nc_Ns_m = 100.0\n",
-                            "model = \"spring_dashpot\"\nk_N_m = 5e3\nc_Ns_m = 50.0\n",
-                            "model = \"step_damped\"\nk = 1e7\np = 1.5\nc_Ns_m = 100.0\nfull_depth_mm = 0.1\n"}) {
+  for (const char* model :
+       {"model = \"spring_dashpot\"\nk_N_m = 1e5\nc_Ns_m = 100.0\n",
+        "model = \"spring_dashpot\"\nk_N_m = 5e3\nc_Ns_m = 50.0\n",
+        "model = \"step_damped\"\nk = 1e7\np = 1.5\nc_Ns_m = 100.0\nfull_depth_mm = 0.1\n"}) {
     SCOPED_TRACE(model);
     const std::string text = std::string(R"(schema = "snare-scenario/2"
 title = "a block on a ramp"
@@ -136,7 +137,9 @@ friction = 0.5
     EXPECT_LT(std::abs(place), 1e-4);
     EXPECT_LT(late_speed, 1e-6);        // the tolerance of velocities
     EXPECT_LT(lost - late_lost, 2e-6);  // 1e-6 m/s against 2 N, in 1 s
-    EXPECT_EQ(std::ranges::count(result.events, coupling::MotionEvent::Kind::touch, &coupling::MotionEvent::kind), 1);
+    EXPECT_EQ(
+        std::ranges::count(result.events, coupling::MotionEvent::Kind::touch, &coupling::MotionEvent::kind),
+        1);
   }
 }
 
@@ -150,7 +153,8 @@ TEST_F(SlowDissipation, OfRandomScenesGrows) {
     return fmt::format("[{}, {}, {}]", between(-size, size), between(-size, size), between(-size, size));
   };
   const auto friction = [&](int k) {
-    return fmt::format("friction = {}\nlaw = \"{}\"\n", between(0.0, 0.6), k % 2 == 0 ? "stick_slip" : "smooth");
+    return fmt::format("friction = {}\nlaw = \"{}\"\n", between(0.0, 0.6),
+                       k % 2 == 0 ? "stick_slip" : "smooth");
   };
   for (int k = 0; k < 14; ++k) {
     SCOPED_TRACE(k);
@@ -158,7 +162,8 @@ TEST_F(SlowDissipation, OfRandomScenesGrows) {
     text += "[gravity]\nvector_m_s2 = " + vector(10.0) + "\n";
     for (int w = 0; w < 1 + k % 2; ++w) {
       text += fmt::format(
-          "[[wires]]\nname = \"w{}\"\nconstruction = \"solid\"\ndiameter_mm = {}\nlength_mm = {}\nyoungs_modulus_GPa = "
+          "[[wires]]\nname = \"w{}\"\nconstruction = \"solid\"\ndiameter_mm = {}\nlength_mm = "
+          "{}\nyoungs_modulus_GPa = "
           "160.0\n"
           "poisson_ratio = 0.3\ndensity_kg_m3 = 7900.0\nfrom_mm = [0.0, {}, 0.0]\nto_mm = [175.0, {}, 0.0]\n"
           "bulge = [0.0, {}, 0.0]\nelements = 12\nmount = \"{}\"\n",
@@ -166,26 +171,30 @@ TEST_F(SlowDissipation, OfRandomScenesGrows) {
           k % 3 == 0 ? "pinned" : "clamped");
     }
     text += fmt::format(
-        "[[bodies]]\nname = \"b\"\nmass_kg = {}\ninertia_kg_m2 = [0.001, 0.0013, 0.0009]\nposition_mm = [{}, -45.0, "
+        "[[bodies]]\nname = \"b\"\nmass_kg = {}\ninertia_kg_m2 = [0.001, 0.0013, 0.0009]\nposition_mm = [{}, "
+        "-45.0, "
         "{}]\n"
         "rotation_deg = {}\nvelocity_m_s = [{}, {}, {}]\nspin_rad_s = {}\n",
         between(0.5, 2.0), between(60.0, 120.0), between(-5.0, 5.0), vector(12.0), between(-0.5, 0.5),
         between(1.0, 3.0), between(-0.2, 0.2), vector(3.0));
     text += k % 2 == 0
                 ? "[[shapes]]\nname = \"tip\"\nframe = \"b\"\nkind = \"knife_edge\"\nlength_mm = 60.0\n"
-                : "[[shapes]]\nname = \"tip\"\nframe = \"b\"\nkind = \"capsule\"\nradius_mm = 4.0\nlength_mm = 60.0\n";
+                : "[[shapes]]\nname = \"tip\"\nframe = \"b\"\nkind = \"capsule\"\nradius_mm = 4.0\nlength_mm "
+                  "= 60.0\n";
     text += "rotation_deg = " + vector(15.0) + "\n" + friction(k);
     // Something that the body falls on behind the wires.
     text +=
         "[[shapes]]\nname = \"wall\"\nframe = \"world\"\nkind = \"plane\"\nposition_mm = [0.0, 60.0, 0.0]\n"
         "rotation_deg = [90.0, 0.0, 0.0]\nwires = []\n";
     text +=
-        "[[shapes]]\nname = \"ball\"\nframe = \"b\"\nkind = \"sphere\"\nradius_mm = 20.0\nposition_mm = [0.0, -30.0, "
+        "[[shapes]]\nname = \"ball\"\nframe = \"b\"\nkind = \"sphere\"\nradius_mm = 20.0\nposition_mm = "
+        "[0.0, -30.0, "
         "0.0]\nwires = []\n";
     text += "[[contacts]]\nname = \"stop\"\nshape = \"wall\"\nother_shape = \"ball\"\n" + friction(k / 2) +
-            std::vector<std::string>{"model = \"spring_dashpot\"\nk_N_m = 1e5\nc_Ns_m = 100.0\n",
-                                     "model = \"power\"\nk = 1e7\np = 1.5\nc = 1e7\n",
-                                     "model = \"step_damped\"\nk = 1e7\np = 1.5\nc_Ns_m = 100.0\nfull_depth_mm = 0.5\n"}
+            std::vector<std::string>{
+                "model = \"spring_dashpot\"\nk_N_m = 1e5\nc_Ns_m = 100.0\n",
+                "model = \"power\"\nk = 1e7\np = 1.5\nc = 1e7\n",
+                "model = \"step_damped\"\nk = 1e7\np = 1.5\nc_Ns_m = 100.0\nfull_depth_mm = 0.5\n"}
                 [static_cast<std::size_t>(k % 3)];
     expect_growing(text, 1e-6);
   }

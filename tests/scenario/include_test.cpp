@@ -91,12 +91,14 @@ contact = "{0}pin in rim"
 
 class Includes : public test::FolderFixture {
  protected:
-  [[nodiscard]] WireMotions read(const std::string& name, const std::vector<std::string>& settings = {}) const {
+  [[nodiscard]] WireMotions read(const std::string& name,
+                                 const std::vector<std::string>& settings = {}) const {
     std::vector<base::Override> overrides;
     for (const std::string& s : settings) overrides.push_back(base::parse_override(s));
     return read_scenario(path(name), overrides).motions;
   }
-  [[nodiscard]] std::string complaint(const std::string& name, const std::vector<std::string>& settings = {}) const {
+  [[nodiscard]] std::string complaint(const std::string& name,
+                                      const std::vector<std::string>& settings = {}) const {
     try {
       (void)read(name, settings);
     } catch (const base::InputError& error) {
@@ -104,7 +106,8 @@ class Includes : public test::FolderFixture {
     }
     return "none";
   }
-  static std::string included(const std::string& name, const std::string& file, const std::string& more = "") {
+  static std::string included(const std::string& name, const std::string& file,
+                              const std::string& more = "") {
     return fmt::format("[[include]]\nname = \"{}\"\nfile = \"{}\"\n{}", name, file, more);
   }
 };
@@ -128,11 +131,13 @@ Eigen::Vector3d end_of(const WireMotions& motions, const std::string& name) {
 TEST_F(Includes, MeanWhatTheirLinesMean) {
   std::filesystem::create_directory(path("parts"));
   write("parts/part.toml", head + snare_and_pin());
-  write("case.toml",
-        head + run + included("ee", "parts/part.toml", "position_mm = [0.0, 30.0, 0.0]\nrpy_deg = [0.0, 0.0, 20.0]\n"));
-  write("whole.toml", head + run +
-                          "[[frames]]\nname = \"ee\"\nposition_mm = [0.0, 30.0, 0.0]\nrpy_deg = [0.0, 0.0, 20.0]\n" +
-                          snare_and_pin("ee_", "ee"));
+  write("case.toml", head + run +
+                         included("ee", "parts/part.toml",
+                                  "position_mm = [0.0, 30.0, 0.0]\nrpy_deg = [0.0, 0.0, 20.0]\n"));
+  write("whole.toml",
+        head + run +
+            "[[frames]]\nname = \"ee\"\nposition_mm = [0.0, 30.0, 0.0]\nrpy_deg = [0.0, 0.0, 20.0]\n" +
+            snare_and_pin("ee_", "ee"));
 
   const WireMotions parts = read("case.toml"), whole = read("whole.toml");
   EXPECT_EQ(parts.runs.front().motion.law_wires.front().name, "ee::snare::wire_1");
@@ -143,7 +148,8 @@ TEST_F(Includes, MeanWhatTheirLinesMean) {
   EXPECT_EQ(contacts.at(static_cast<std::size_t>(parts.sensors[2].index)), "ee::pin in rim");
   const Eigen::Vector3d here = end_of(parts, "ee::visitor"), there = end_of(whole, "ee_visitor");
   EXPECT_EQ(here, there);
-  EXPECT_GT((here - parts.runs.front().motion.bodies.front().start.position).norm(), 1e-5);  // the wires have moved it
+  EXPECT_GT((here - parts.runs.front().motion.bodies.front().start.position).norm(),
+            1e-5);  // the wires have moved it
 }
 
 TEST_F(Includes, StandSideBySideAndInEachOther) {
@@ -151,8 +157,8 @@ TEST_F(Includes, StandSideBySideAndInEachOther) {
   write("two.toml", head + included("left", "one.toml", "position_mm = [-400.0, 0.0, 0.0]\n") +
                         included("right", "one.toml", "position_mm = [400.0, 0.0, 0.0]\n"));
   write("case.toml", head + run + included("pair", "two.toml", "position_mm = [0.0, 0.0, 50.0]\n"));
-  const WireMotions all = read(
-      "case.toml", {"snares[pair::right::snare].ring.start_deg=170", "include[pair].position_mm=[0.0, 0.0, 70.0]"});
+  const WireMotions all = read("case.toml", {"snares[pair::right::snare].ring.start_deg=170",
+                                             "include[pair].position_mm=[0.0, 0.0, 70.0]"});
   const coupling::Motion& m = all.runs.front().motion;
   ASSERT_EQ(m.bodies.size(), 2u);
   EXPECT_EQ(m.bodies[0].name, "pair::left::visitor");
@@ -172,15 +178,18 @@ TEST_F(Includes, SayWhatIsWrong) {
       {included("a", "none.toml"), "none.toml: no such file"},
       {included("a", "worse.toml"), "worse.toml:64: sensors[a::knock].speed = 1.0, unknown key"},
       {included("a", "phases.toml"), "phases.toml:64: phases, belongs to the file that includes this one"},
-      {included("a", "older.toml"), "older.toml:1: schema = \"snare-scenario/1\", must be \"snare-scenario/2\""},
+      {included("a", "older.toml"),
+       "older.toml:1: schema = \"snare-scenario/1\", must be \"snare-scenario/2\""},
       {included("a::b", "part.toml"), "must be a name of its own"},
       {included("a", "part.toml") + included("a", "part.toml"), "is taken by another part"},
       {included("a", "part.toml", "place = 1.0\n"), "unknown key"},
       {included("a", "part.toml", "frame = \"nowhere\"\n"), "must be the name of a frame"},
       {"[[include]]\nname = \"a\"\n", "include[a].file, missing"},
-      {included("a", "part.toml") + "[[sensors]]\nname = \"a::x\"\nkind = \"tension\"\nwire = \"a::snare::wire_1\"\n",
+      {included("a", "part.toml") +
+           "[[sensors]]\nname = \"a::x\"\nkind = \"tension\"\nwire = \"a::snare::wire_1\"\n",
        "must not have \"::\""},
-      {included("a", "part.toml") + "[[bodies]]\nname = \"a\"\nmass_kg = 1.0\ninertia_kg_m2 = [1.0, 1.0, 1.0]\n",
+      {included("a", "part.toml") +
+           "[[bodies]]\nname = \"a\"\nmass_kg = 1.0\ninertia_kg_m2 = [1.0, 1.0, 1.0]\n",
        "is taken by a body"},
   };
   for (const auto& [text, message] : cases) {

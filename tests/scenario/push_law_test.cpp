@@ -21,7 +21,8 @@ namespace {
 using Eigen::Vector2d;
 using ::testing::HasSubstr;
 
-const std::filesystem::path air_table = std::filesystem::path(SNARE_SOURCE_DIR) / "data/scenarios/air_table.toml";
+const std::filesystem::path air_table =
+    std::filesystem::path(SNARE_SOURCE_DIR) / "data/scenarios/air_table.toml";
 
 NamedMotion air_table_with(const std::vector<std::string>& settings) {
   return read_scenario(air_table, test::overrides(settings)).motions.runs.at(0);
@@ -69,9 +70,10 @@ TEST(PushLaws, OfThePapersStandForTheWire) {
 
 // Digest of Table 4: the quadratic at s = 90 mm, head-on, without damping: 8.9 kg at 0.1 m/s.
 TEST(PushLaws, QuadraticHeadOn) {
-  const NamedMotion run = air_table_with(
-      {"wires[wire].model=\"quadratic\"", "shapes[probe].position_mm=[0.0, 100.0, 0.0]",
-       "bodies[target].position_mm=[90.0, -88.0123, 0.0]", "duration_s=0.4", "solver.relative_tolerance=1e-7"});
+  const NamedMotion run =
+      air_table_with({"wires[wire].model=\"quadratic\"", "shapes[probe].position_mm=[0.0, 100.0, 0.0]",
+                      "bodies[target].position_mm=[90.0, -88.0123, 0.0]", "duration_s=0.4",
+                      "solver.relative_tolerance=1e-7"});
   const coupling::MotionResult r = coupling::simulate(run.motion, run.options);
   ASSERT_TRUE(r.report.usable()) << r.report.message;
   // Quadrature of A d^2 + B d + C (cut off where it would pull) against m v^2/2 gives depth 6.07 mm, force 25.2 N;
@@ -103,8 +105,10 @@ TEST(PushLaws, SayWhatIsWrong) {
       {"wires[wire].quadratic.direction=\"up\"", "must be \"outward\" or \"inward\""},
       {"wires[wire].quadratic.k_N_m=1", "wires[wire].quadratic.k_N_m = 1, unknown key"},
       {"wires[wire].spring_dashpot.k_N_m=-1", "wires[wire].spring_dashpot.k_N_m = -1, must be > 0"},
-      {"wires[wire].to_frame=\"target\"", "must not be \"quadratic\" of a wire whose mounts move against each other"},
-      {"shapes[probe].kind=\"sphere\"", "must be a capsule, knife_edge, cylinder or grapple_shaft to meet wire"},
+      {"wires[wire].to_frame=\"target\"",
+       "must not be \"quadratic\" of a wire whose mounts move against each other"},
+      {"shapes[probe].kind=\"sphere\"",
+       "must be a capsule, knife_edge, cylinder or grapple_shaft to meet wire"},
       {"wires[wire].length_mm=500", "must lie over its chord at rest for a law to stand for it"},
   };
   test::expect_refused(wrong, [](const std::string& setting) {
@@ -116,14 +120,16 @@ TEST(PushLaws, SayWhatIsWrong) {
 
 /// The least of a law.json with a table of the air table's wire.
 nlohmann::json law_json(double span, double slack) {
-  const double bending = 193e9 * EIGEN_PI / 64.0 * std::pow(1.5e-3, 4), axial = 193e9 * EIGEN_PI / 4.0 * 2.25e-6;
+  const double bending = 193e9 * EIGEN_PI / 64.0 * std::pow(1.5e-3, 4),
+               axial = 193e9 * EIGEN_PI / 4.0 * 2.25e-6;
   std::vector<double> nodes;
   // F L^2/EI = 1e4 x^2 g(s) over x = d/L, s, with a level g at mid-span: the value, d, s, ds; nothing by the slack.
   const std::vector<std::array<double, 3>> knots{{0.1, 1.2, 4.0}, {0.5, 2.0, 0.0}};  // s, g, dg/ds
   for (int e = 0; e < 2; ++e) {
     for (const auto& [s, g, slope] : knots) {
       for (const double x : {0.0, 0.02, 0.05}) {
-        for (const double v : {1e4 * x * x * g, 2e4 * x * g, 1e4 * x * x * slope, 2e4 * x * slope, 0.0, 0.0, 0.0, 0.0})
+        for (const double v :
+             {1e4 * x * x * g, 2e4 * x * g, 1e4 * x * x * slope, 2e4 * x * slope, 0.0, 0.0, 0.0, 0.0})
           nodes.push_back(v);
       }
     }
@@ -147,7 +153,8 @@ nlohmann::json law_json(double span, double slack) {
                               {"slack_mm", {1e3 * slack - 1.0, 1e3 * slack + 1.0}}};
   return {{"schema", "snare-law/1"},
           {"title", "made for the test"},
-          {"cases", {{{"wire", wire}, {"ranges", ranges}, {"table", table}, {"positions", nlohmann::json::array()}}}}};
+          {"cases",
+           {{{"wire", wire}, {"ranges", ranges}, {"table", table}, {"positions", nlohmann::json::array()}}}}};
 }
 
 class TablesOfPushes : public test::FolderFixture {
@@ -175,18 +182,19 @@ TEST_F(TablesOfPushes, HaveAnEnergy) {
       const Vector2d step = h * Vector2d::Unit(k);
       const coupling::WirePush up = push(place + step, 0.0), down = push(place - step, 0.0);
       EXPECT_NEAR((up.energy - down.energy) / (2.0 * h), p.force[k], 1e-5 * p.force.norm()) << k;
-      EXPECT_LT(((up.force - down.force) / (2.0 * h) - p.by_place.col(k)).norm(), 1e-4 * p.by_place.norm()) << k;
+      EXPECT_LT(((up.force - down.force) / (2.0 * h) - p.by_place.col(k)).norm(), 1e-4 * p.by_place.norm())
+          << k;
     }
     EXPECT_NEAR(p.force.y(), law.loading->force(p.depth, place.x(), 0.005), 1e-12 * p.force.y());
   }
 }
 
 TEST_F(TablesOfPushes, KeepTheEnergyOfAnImpactBesideTheMiddle) {
-  const NamedMotion run =
-      read(law_json(0.175, 0.005),
-           {"bodies[target].position_mm=[10.0, -93.0, 0.0]", "duration_s=0.3", "solver.relative_tolerance=1e-9",
-            "solver.body_position_tolerance_m=1e-12", "solver.body_velocity_tolerance_m_s=1e-9",
-            "solver.body_angle_tolerance_rad=1e-11", "solver.body_spin_tolerance_rad_s=1e-8"});
+  const NamedMotion run = read(
+      law_json(0.175, 0.005),
+      {"bodies[target].position_mm=[10.0, -93.0, 0.0]", "duration_s=0.3", "solver.relative_tolerance=1e-9",
+       "solver.body_position_tolerance_m=1e-12", "solver.body_velocity_tolerance_m_s=1e-9",
+       "solver.body_angle_tolerance_rad=1e-11", "solver.body_spin_tolerance_rad_s=1e-8"});
   const coupling::MotionResult r = coupling::simulate(run.motion, run.options);
   ASSERT_TRUE(r.report.usable()) << r.report.message;
   ASSERT_EQ(r.events.size(), 2u);
@@ -207,7 +215,8 @@ TEST_F(TablesOfPushes, AreOfTheirWireAlone) {
               HasSubstr("must have this wire's slack of 7 mm in its range, 4 to 6 mm"));
   EXPECT_THAT(told(law, {"shapes[probe].radius_mm=5.0"}),
               HasSubstr("must be 6, with which the law of wire was distilled"));
-  EXPECT_THAT(told(law, {"wires[wire].table.case=2"}), HasSubstr("wires[wire].table.case = 2, must be at most 1"));
+  EXPECT_THAT(told(law, {"wires[wire].table.case=2"}),
+              HasSubstr("wires[wire].table.case = 2, must be at most 1"));
   EXPECT_THAT(told(nlohmann::json::object(), {}), HasSubstr("law.json: schema, missing"));
 }
 

@@ -53,7 +53,8 @@ TEST(PushWriter, APlainPushReadsAsItself) {
   expect_same(read.wire.density, push.wire.density);
   expect_same(read.mount.span, push.mount.span);
   expect_same(read.pusher.radius, push.pusher.radius);
-  EXPECT_FALSE(read.mount.translational_stiffness || read.mount.rotational_stiffness || read.mount.slip_tension);
+  EXPECT_FALSE(read.mount.translational_stiffness || read.mount.rotational_stiffness ||
+               read.mount.slip_tension);
   EXPECT_EQ(text.find("[bulge]"), std::string::npos) << "defaults are left out";
   EXPECT_EQ(text.find("[gravity]"), std::string::npos);
 }

@@ -15,15 +15,17 @@ namespace {
 using ::testing::EndsWith;
 
 std::string problem_of(const std::string& name, const std::vector<base::Override>& overrides) {
-  return test::refusal(
-      [&] { return read_scenario(std::filesystem::path(SNARE_SOURCE_DIR) / "data/scenarios" / name, overrides); });
+  return test::refusal([&] {
+    return read_scenario(std::filesystem::path(SNARE_SOURCE_DIR) / "data/scenarios" / name, overrides);
+  });
 }
 
 TEST(Scenario, SaysFirstWhatItIs) {
   EXPECT_THAT(problem_of("air_table.toml", {{"schema", "x"}, {"duration_s", "-1"}}),
               EndsWith("schema = x, must be \"snare-scenario/2\""));
-  EXPECT_THAT(problem_of("air_table.toml", {{"kind", "fall"}}),
-              EndsWith("belongs to older files: take the line out, a file of snare-scenario/2 lists what there is"));
+  EXPECT_THAT(
+      problem_of("air_table.toml", {{"kind", "fall"}}),
+      EndsWith("belongs to older files: take the line out, a file of snare-scenario/2 lists what there is"));
 }
 
 class OlderScenarios : public test::FolderFixture {
@@ -47,7 +49,8 @@ TEST_F(OlderScenarios, AreToldWhatToChange) {
             begin + "change the line to schema = \"snare-scenario/2\" and take kind out");
   EXPECT_EQ(told("kind = \"contact\"\n[body]\nmass_kg = 1.0\n"),
             lists("[[wires]], [[bodies]] and [[shapes]]", "contact"));
-  EXPECT_EQ(told("kind = \"arm_contact\"\n"), lists("[[arms]], [[wires]], [[bodies]] and [[shapes]]", "arm_contact"));
+  EXPECT_EQ(told("kind = \"arm_contact\"\n"),
+            lists("[[arms]], [[wires]], [[bodies]] and [[shapes]]", "arm_contact"));
   EXPECT_EQ(told("kind = \"joint_step\"\n"), lists("[[arms]] with deflections_deg", "joint_step"));
   EXPECT_EQ(told("kind = \"tip_impulse\"\n"), lists("[[arms]] and [[loads]]", "tip_impulse"));
   EXPECT_EQ(told("kind = \"joint_motion\"\n"), lists("[[arms]] and [[drives]]", "joint_motion"));
@@ -56,7 +59,8 @@ TEST_F(OlderScenarios, AreToldWhatToChange) {
 
 TEST(Scenario, ArmsMustGetOn) {
   const auto least = [](const std::vector<base::Override>& overrides) {
-    const std::filesystem::path file = std::filesystem::path(SNARE_SOURCE_DIR) / "data/scenarios" / "jemrms_step.toml";
+    const std::filesystem::path file =
+        std::filesystem::path(SNARE_SOURCE_DIR) / "data/scenarios" / "jemrms_step.toml";
     return read_scenario(file, overrides).motions.runs.front().options.least_advance;
   };
   EXPECT_EQ(least({}), least_advance);
@@ -67,7 +71,8 @@ TEST(Scenario, ArmsMustGetOn) {
 
 TEST(Scenario, SwingsAreOfAJointWithAMotor) {
   EXPECT_THAT(problem_of("jemrms_step.toml", {{"output.swings", "rms::elbow"}}),
-              testing::StartsWith("--set: output.swings = rms::elbow, must be a joint with a motor: \"rms::joint_1\""));
+              testing::StartsWith(
+                  "--set: output.swings = rms::elbow, must be a joint with a motor: \"rms::joint_1\""));
 }
 
 }  // namespace

@@ -46,7 +46,8 @@ SolverSettings few_edges() {
 }
 
 /// An experiment of which these settings are the truth.
-Experiment with(std::vector<Series> series, const std::vector<Setting>& truth, double sigma, unsigned seed = 1) {
+Experiment with(std::vector<Series> series, const std::vector<Setting>& truth, double sigma,
+                unsigned seed = 1) {
   for (Series& s : series) {
     s.largest_displacement = series.front().readings->displacement.back();
     s.largest_force = 1.0;
@@ -87,7 +88,8 @@ std::string told(const Trace& t) {
 
 /// The first selected effect, or one that these data cannot tell from it.
 testing::AssertionResult names(const Trace& t, const std::string& effect) {
-  const bool found = t.selected.size() == 1 && testing::Value(t.selected_classes.front(), testing::Contains(effect));
+  const bool found =
+      t.selected.size() == 1 && testing::Value(t.selected_classes.front(), testing::Contains(effect));
   return (found ? testing::AssertionSuccess() : testing::AssertionFailure()) << told(t);
 }
 
@@ -110,8 +112,8 @@ TEST(SlowCauses, ClampsThatTurnAreFoundFromAnyStart) {
 
 // Both stiffnesses and nothing else, though two effects could bring as much: one diameter is one cause.
 TEST(SlowCauses, ADiameterIsOneCause) {
-  Experiment e =
-      with(bench(1.5 * mm, 193e9, 177.5 * mm, 175.0 * mm, 4.0 * mm), {planted("wire.diameter_mm", 0.1 * mm)}, 0.06);
+  Experiment e = with(bench(1.5 * mm, 193e9, 177.5 * mm, 175.0 * mm, 4.0 * mm),
+                      {planted("wire.diameter_mm", 0.1 * mm)}, 0.06);
   e.free = {"wire.length_mm"};
   const Trace t = trace(e);
   EXPECT_TRUE(names(t, "wire_diameter"));
@@ -141,10 +143,10 @@ TEST(SlowCauses, AStiffnessBeyondTheSectionIsLookedInto) {
 // A single cause of one series beside causes of all.
 TEST(SlowCauses, ASeriesOfAnotherWire) {
   const auto steel = bench(1.5 * mm, 193e9, 180.0 * mm, 175.0 * mm, 4.0 * mm);
-  const Trace t = trace(
-      with(steel,
-           {planted("series[s3].wire.bending_stiffness_Nm2", 0.3), planted("series[s3].wire.axial_stiffness_N", -0.4)},
-           0.05));
+  const Trace t = trace(with(steel,
+                             {planted("series[s3].wire.bending_stiffness_Nm2", 0.3),
+                              planted("series[s3].wire.axial_stiffness_N", -0.4)},
+                             0.05));
   EXPECT_EQ(t.kind, VerdictKind::not_explained) << told(t);
   EXPECT_EQ(t.channel, "wire");
   const auto odd = std::ranges::find_if(

@@ -32,7 +32,8 @@ std::vector<CauseHypothesis> weighed(const Experiment& experiment) {
 }
 
 /// Adds `deviations` standard deviations of a reading times a wave of a share in [0, 1] to every reading.
-Experiment disturbed(unsigned seed, double deviations, const std::function<double(const Series&, std::size_t)>& share) {
+Experiment disturbed(unsigned seed, double deviations,
+                     const std::function<double(const Series&, std::size_t)>& share) {
   Experiment experiment = validation::make_blind_set("none", 0.0, seed).experiment;
   for (Series& s : experiment.series) {
     const double sigma = s.force_sigma.value_or(0.0);
@@ -53,7 +54,8 @@ double largest_force(const Experiment& experiment) {
 TEST(SlowHypotheses, NothingLeadsWhereNothingIsMissing) {
   double sum = 0.0;
   for (unsigned seed = 1; seed <= 10; ++seed) {
-    const std::vector<CauseHypothesis> all = weighed(validation::make_blind_set("none", 0.0, seed).experiment);
+    const std::vector<CauseHypothesis> all =
+        weighed(validation::make_blind_set("none", 0.0, seed).experiment);
     double total = 0.0;
     for (const CauseHypothesis& h : all) total += h.probability;
     EXPECT_NEAR(total, 1.0, 1e-12);

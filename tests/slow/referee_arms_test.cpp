@@ -81,7 +81,8 @@ constexpr double arm_step_tolerance = 1e-9;
 
 ArmProblem random_arm(Draws& draw) {
   ArmProblem p;
-  p.plain = test::random_tree(draw.generator(), draw.chance(0.4) ? test::Base::floating : test::Base::on_the_world);
+  p.plain =
+      test::random_tree(draw.generator(), draw.chance(0.4) ? test::Base::floating : test::Base::on_the_world);
   p.plain.gravity *= 0.3;
   multibody::ElasticArm& arm = p.run.arm;
   arm.tree = test::make_tree(p.plain);
@@ -140,7 +141,8 @@ ArmProblem random_arm(Draws& draw) {
     if (g.mode == DriveMode::servo || g.mode == DriveMode::course)
       drive.course = multibody::Course(g.from, g.to, g.begin, g.duration);
     if (g.mode == DriveMode::torque)
-      drive = Drive::with_torque(g.begin, {g.times.begin(), g.times.end()}, {g.torques.begin(), g.torques.end()});
+      drive =
+          Drive::with_torque(g.begin, {g.times.begin(), g.times.end()}, {g.torques.begin(), g.torques.end()});
     p.run.drives.push_back(drive);
   }
   const auto motors = static_cast<Eigen::Index>(p.gears.size());
@@ -187,11 +189,14 @@ class DartArm {
       const double spring = g.torque(q[g.coordinate] - motor[j], v[g.velocity] - motor_rate[j]);
       torque[g.velocity] = -spring;
       motor_rates[j] =
-          g.rules() ? 0.0 : (g.drive(time, motor[j], motor_rate[j]) + spring - g.friction(motor_rate[j])) / g.inertia;
+          g.rules()
+              ? 0.0
+              : (g.drive(time, motor[j], motor_rate[j]) + spring - g.friction(motor_rate[j])) / g.inertia;
       if (g.mode == DriveMode::course) motor_rate[j] = 0.0;  // known, not integrated
     }
     dart_.set(tree, {q, v});
-    const Eigen::VectorXd acceleration = dart_.forward_dynamics(torque), rate = test::coordinate_rate(tree, q, v);
+    const Eigen::VectorXd acceleration = dart_.forward_dynamics(torque),
+                          rate = test::coordinate_rate(tree, q, v);
     rates.clear();
     for (const auto& part : {rate, acceleration, Eigen::VectorXd(motor_rate), Eigen::VectorXd(motor_rates)})
       rates.insert(rates.end(), part.begin(), part.end());
@@ -229,8 +234,9 @@ ArmVector integrated_by_dart(const ArmProblem& p, ArmVector state, double tolera
     const auto rate = [&](const ArmVector& at, ArmVector& rates, double time) {
       arm(at, rates, std::clamp(time, least, std::max(least, most)));
     };
-    odeint::integrate_adaptive(odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<ArmVector>()),
-                               rate, state, from, to, std::min(1e-4, to - from));
+    odeint::integrate_adaptive(
+        odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<ArmVector>()), rate, state,
+        from, to, std::min(1e-4, to - from));
     from = to;
   }
   const std::size_t first = state.size() - 2 * p.gears.size();
@@ -245,15 +251,17 @@ ArmVector integrated_by_dart(const ArmProblem& p, ArmVector state, double tolera
 
 double largest_difference(const ArmVector& a, const ArmVector& b) {
   double d = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) d = std::max(d, std::abs(a[i] - b[i]) / std::max(1.0, std::abs(b[i])));
+  for (std::size_t i = 0; i < a.size(); ++i)
+    d = std::max(d, std::abs(a[i] - b[i]) / std::max(1.0, std::abs(b[i])));
   return d;
 }
 
 std::string described(const ArmProblem& p) {
   std::string text = fmt::format("{} bodies, {:.9g} s;", p.plain.bodies.size(), p.run.end);
   for (const Gear& g : p.gears)
-    text += fmt::format(" [v {} spring {:.6g} {:.6g} from {:.6g}, damper {:.6g}, inertia {:.6g}, drive {}]", g.velocity,
-                        g.first, g.second, g.bend, g.damping, g.inertia, static_cast<int>(g.mode));
+    text +=
+        fmt::format(" [v {} spring {:.6g} {:.6g} from {:.6g}, damper {:.6g}, inertia {:.6g}, drive {}]",
+                    g.velocity, g.first, g.second, g.bend, g.damping, g.inertia, static_cast<int>(g.mode));
   return text;
 }
 
@@ -271,15 +279,16 @@ TEST(SlowReferees, RandomElasticArmsMoveAsDartSays) {
     ArmVector beside = start;
     for (int i = 0; i < p.run.arm.tree.velocities(); ++i)
       beside[static_cast<std::size_t>(p.run.arm.tree.coordinates() + i)] += i % 2 == 0 ? change : -change;
-    const double growth = std::max(1.0, largest_difference(integrated_by_dart(p, beside, 1e-10), reference) / change);
+    const double growth =
+        std::max(1.0, largest_difference(integrated_by_dart(p, beside, 1e-10), reference) / change);
     const multibody::ArmHistory history = multibody::simulate(p.run);
     const double difference = largest_difference(joined(history.samples.back().state), reference);
     // Each step may err by its tolerance.
     const double limit = static_cast<double>(history.statistics.steps) * arm_step_tolerance * growth;
-    const std::string text =
-        fmt::format("problem {}: differs by {:.2e}, {:.2e} of the limit; {} steps, {} events, growth {:.3g}, {} {}", k,
-                    difference, difference / limit, history.statistics.steps, history.events.size(), growth,
-                    history.report.message, described(p));
+    const std::string text = fmt::format(
+        "problem {}: differs by {:.2e}, {:.2e} of the limit; {} steps, {} events, growth {:.3g}, {} {}", k,
+        difference, difference / limit, history.statistics.steps, history.events.size(), growth,
+        history.report.message, described(p));
     EXPECT_TRUE(history.report.usable()) << text;
     EXPECT_LE(difference, limit) << text;
     if (difference <= worst * limit) continue;
@@ -293,7 +302,8 @@ TEST(SlowReferees, RandomElasticArmsMoveAsDartSays) {
 /// Our tree in DART, from the tree that the reader of arms has made.
 class DartOfTree {
  public:
-  explicit DartOfTree(const multibody::Tree& tree) : tree_(tree), skeleton_(dart::dynamics::Skeleton::create("arm")) {
+  explicit DartOfTree(const multibody::Tree& tree)
+      : tree_(tree), skeleton_(dart::dynamics::Skeleton::create("arm")) {
     using namespace dart::dynamics;
     for (const multibody::TreeBody& b : tree.bodies()) {
       BodyNode* parent = b.parent < 0 ? nullptr : skeleton_->getBodyNode(static_cast<std::size_t>(b.parent));
@@ -372,13 +382,16 @@ TEST(SlowReferees, ShippedArmsInRandomPosesAgreeWithDart) {
       const Eigen::MatrixXd mass = multibody::mass_matrix(tree, state.q, workspace);
       const Eigen::VectorXd scale = mass.diagonal().cwiseSqrt();
       const double of_mass =
-          ((mass - dart.skeleton().getMassMatrix()).array() / (scale * scale.transpose()).array()).abs().maxCoeff();
+          ((mass - dart.skeleton().getMassMatrix()).array() / (scale * scale.transpose()).array())
+              .abs()
+              .maxCoeff();
       const Eigen::VectorXd none = Eigen::VectorXd::Zero(tree.velocities());
       const Eigen::VectorXd bias = multibody::inverse_dynamics(tree, state.q, state.v, none, {}, workspace);
       const Eigen::VectorXd torque =
           bias + scale.cwiseProduct(test::random_values(draw.generator(), tree.velocities(), 10.0));
       const double of_bias = test::relative_difference(bias, dart.skeleton().getCoriolisAndGravityForces());
-      const Eigen::VectorXd acceleration = multibody::forward_dynamics(tree, state.q, state.v, torque, {}, workspace);
+      const Eigen::VectorXd acceleration =
+          multibody::forward_dynamics(tree, state.q, state.v, torque, {}, workspace);
       dart.skeleton().setForces(torque);
       dart.skeleton().computeForwardDynamics();
       const Eigen::VectorXd difference = acceleration - dart.skeleton().getAccelerations();
@@ -388,8 +401,8 @@ TEST(SlowReferees, ShippedArmsInRandomPosesAgreeWithDart) {
       multibody::Kinematics kinematics(tree);
       multibody::place(tree, state.q, kinematics);
       multibody::set_moving(tree, state.v, kinematics);
-      const double of_energy =
-          std::abs(multibody::kinetic_energy(tree, kinematics) / dart.skeleton().computeKineticEnergy() - 1.0);
+      const double of_energy = std::abs(
+          multibody::kinetic_energy(tree, kinematics) / dart.skeleton().computeKineticEnergy() - 1.0);
       const Eigen::Vector3d centre = multibody::centre_of_mass(tree, kinematics) - dart.skeleton().getCOM();
       const Eigen::Vector3d momentum =
           multibody::momentum(tree, kinematics).force - tree.mass() * dart.skeleton().getCOMLinearVelocity();
@@ -399,8 +412,8 @@ TEST(SlowReferees, ShippedArmsInRandomPosesAgreeWithDart) {
       // Rounding of products of some dozen factors; see tests/multibody/dart_test.cpp.
       EXPECT_LT(largest, 1e-9) << "pose " << k << ": mass matrix " << of_mass << ", bias " << of_bias
                                << ", acceleration " << of_acceleration << ", energy " << of_energy
-                               << ", centre of mass " << of_centre << " m, momentum " << of_momentum << " m/s; q "
-                               << state.q.transpose() << "; v " << state.v.transpose();
+                               << ", centre of mass " << of_centre << " m, momentum " << of_momentum
+                               << " m/s; q " << state.q.transpose() << "; v " << state.v.transpose();
     }
     RecordProperty("worst of " + file.path().stem().string(), fmt::format("{:.2e}", worst));
   }

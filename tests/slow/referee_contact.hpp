@@ -78,7 +78,8 @@ class PlanarContact {
         for_gauss_places(from, to, [&](double u, double weight) {
           const Vector2 at = place(e, u, x, slopes), normal = (at - centre).normalized();
           const Vector2 tangent = (6.0 * u * (1.0 - u) / h) * (x[e + 1] - x[e]) +
-                                  (1.0 - u) * (1.0 - 3.0 * u) * slopes[e] + u * (3.0 * u - 2.0) * slopes[e + 1];
+                                  (1.0 - u) * (1.0 - 3.0 * u) * slopes[e] +
+                                  u * (3.0 * u - 2.0) * slopes[e + 1];
           const Vector2 arm = at - body.place;
           const Vector2 w = place(e, u, v, rates) - body.velocity - body.spin * Vector2(-arm.y(), arm.x());
           const double g = gap(u), gap_rate = normal.dot(w);
@@ -116,7 +117,8 @@ class PlanarContact {
     spread(on_slopes, f);
     constexpr double least_load = 1e-6, forgetting = 0.01;  // [N], [s]
     for (std::size_t i = 0; i < n; ++i)
-      sum.bristle_rates.push_back((flow[i] - least_load * bristles[i] / forgetting) / (pressed[i] + least_load));
+      sum.bristle_rates.push_back((flow[i] - least_load * bristles[i] / forgetting) /
+                                  (pressed[i] + least_load));
     return sum;
   }
 
@@ -131,10 +133,12 @@ class PlanarContact {
       return (place(e, std::clamp(s - static_cast<double>(e), 0.0, 1.0), x, slopes) - centre).norm() - reach;
     };
     std::vector<double> gaps;
-    for (std::size_t k = 0; k <= samples * wire_.edges(); ++k) gaps.push_back(at(static_cast<double>(k) / samples));
+    for (std::size_t k = 0; k <= samples * wire_.edges(); ++k)
+      gaps.push_back(at(static_cast<double>(k) / samples));
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < gaps.size(); ++k) {
-      const double before = k > 0 ? gaps[k - 1] : gaps[k], after = k + 1 < gaps.size() ? gaps[k + 1] : gaps[k];
+      const double before = k > 0 ? gaps[k - 1] : gaps[k],
+                   after = k + 1 < gaps.size() ? gaps[k + 1] : gaps[k];
       if (gaps[k] <= 0.0 || gaps[k] > std::min(before, after)) continue;
       const double s = static_cast<double>(k) / samples, beside = 1.0 / samples;
       const double g = gaps[k] > reach ? gaps[k] : at(lowest(at, s - beside, s + beside));
@@ -177,7 +181,8 @@ class PlanarContact {
     Places slopes;
     for (std::size_t i = 0; i < x.size(); ++i) {
       const Slope s = slope_at(i);
-      slopes.push_back(s.before * (x[s.first + 1] - x[s.first]) + s.after * (x[s.first + 2] - x[s.first + 1]));
+      slopes.push_back(s.before * (x[s.first + 1] - x[s.first]) +
+                       s.after * (x[s.first + 2] - x[s.first + 1]));
     }
     return slopes;
   }
@@ -232,10 +237,12 @@ class PlanarContact {
       const auto i = static_cast<std::size_t>(k);
       // A minimum beside a sample that is open.
       for (const std::size_t m : {i, i + 1}) {
-        const double left = points[m == 0 ? 0 : m - 1][1], right = points[std::min<std::size_t>(m + 1, samples)][1];
+        const double left = points[m == 0 ? 0 : m - 1][1],
+                     right = points[std::min<std::size_t>(m + 1, samples)][1];
         const bool is_least = points[m][1] >= 0.0 && points[m][1] <= std::min({left, right, way / samples});
         if (!is_least) continue;
-        if (const double u = lowest(gap, points[i][0], points[i + 1][0]); gap(u) < 0.0) all.push_back({u, gap(u)});
+        if (const double u = lowest(gap, points[i][0], points[i + 1][0]); gap(u) < 0.0)
+          all.push_back({u, gap(u)});
         break;
       }
       all.push_back(points[i + 1]);

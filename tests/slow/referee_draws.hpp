@@ -20,9 +20,13 @@ class Draws {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
   /// Even in the logarithm; low > 0.
-  [[nodiscard]] double of_any_size(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
+  [[nodiscard]] double of_any_size(double low, double high) {
+    return std::exp(between(std::log(low), std::log(high)));
+  }
   [[nodiscard]] bool chance(double share) { return between(0.0, 1.0) < share; }
-  [[nodiscard]] int count(int least, int most) { return std::uniform_int_distribution<int>(least, most)(random_); }
+  [[nodiscard]] int count(int least, int most) {
+    return std::uniform_int_distribution<int>(least, most)(random_);
+  }
   template <class T>
   [[nodiscard]] T one_of(const std::vector<T>& list) {
     return list[static_cast<std::size_t>(count(0, static_cast<int>(list.size()) - 1))];

@@ -64,7 +64,8 @@ inline std::vector<State> integrated(const Equations& equations, State state, do
         taken *= 0.5;
       }
       if (succeeded && last) time = to;
-      if (!(succeeded && limited && taken >= tried)) step = taken;  // a short last step says nothing of the next one
+      if (!(succeeded && limited && taken >= tried))
+        step = taken;  // a short last step says nothing of the next one
     }
     states.push_back(state);
   }
@@ -105,8 +106,8 @@ struct Reference {
     const std::vector<State> other = integrated(equations(), beside, end, rough_tolerance);
     double largest = 0.0;
     for (std::size_t k = 0; k < states.size(); ++k) {
-      largest =
-          std::max({largest, difference(states[k], other[k], 0) / change, difference(states[k], other[k], 1) / change});
+      largest = std::max({largest, difference(states[k], other[k], 0) / change,
+                          difference(states[k], other[k], 1) / change});
       growth.push_back(largest);
     }
   }
@@ -114,7 +115,8 @@ struct Reference {
   /// Largest difference of places (0) or velocities (1), as a share of the way or of the speed.
   [[nodiscard]] double difference(const State& a, const State& b, std::size_t which) const {
     double d = 0.0;
-    for (std::size_t i = 0; i < places_; ++i) raise(d, std::abs(a[which * places_ + i] - b[which * places_ + i]));
+    for (std::size_t i = 0; i < places_; ++i)
+      raise(d, std::abs(a[which * places_ + i] - b[which * places_ + i]));
     return d / (which == 0 ? way : speed);
   }
 
@@ -148,10 +150,11 @@ inline Verdict judged(
   options.newton_share = 1e-3;
   options.wire_loads = true;
   std::vector<State> states;
-  const coupling::MotionResult result = coupling::simulate(motion, options, [&](const coupling::MotionSample& s) {
-    states.push_back(sampled(s));
-    return false;
-  });
+  const coupling::MotionResult result =
+      coupling::simulate(motion, options, [&](const coupling::MotionSample& s) {
+        states.push_back(sampled(s));
+        return false;
+      });
   Verdict v;
   if (states.size() < reference.states.size() - 1) v.of_limit = std::numeric_limits<double>::infinity();
   const double until = end(result);
@@ -168,7 +171,8 @@ inline Verdict judged(
     v.last = k;
   }
   v.text = fmt::format(
-      "places differ by {:.2e} of the way {:.4g} m, velocities by {:.2e} of {:.4g} m/s up to sample {}, {:.2e} of "
+      "places differ by {:.2e} of the way {:.4g} m, velocities by {:.2e} of {:.4g} m/s up to sample {}, "
+      "{:.2e} of "
       "the limit; {} steps, growth {:.3g} {}",
       v.places, reference.way, v.velocities, reference.speed, v.last, v.of_limit, result.statistics.steps,
       reference.growth[v.last], result.report.message);
@@ -231,7 +235,8 @@ inline PlanarProblem random_planar_wire(Draws& draw) {
   if (draw.chance(0.5)) p.plane.axes = random_turn(draw);
 
   const double turned = draw.between(-pi, pi), arc = draw.between(-0.4, 0.4), wave = draw.between(-0.4, 0.4),
-               second = draw.between(-0.4, 0.4), at_left = draw.between(-0.1, 0.1), at_right = draw.between(-0.1, 0.1);
+               second = draw.between(-0.4, 0.4), at_left = draw.between(-0.1, 0.1),
+               at_right = draw.between(-0.1, 0.1);
   const auto angle = [&](double s) {
     return turned + arc * s + wave * std::sin(pi * s) + second * std::sin(2.0 * pi * s);
   };
@@ -243,7 +248,8 @@ inline PlanarProblem random_planar_wire(Draws& draw) {
     v = {x, draw.between(-fast, fast)};
   }
   // Waves of the velocities are zero at ends that are held.
-  const double from = w.left.kind == EndKind::free ? 0.5 : 0.0, to = w.right.kind == EndKind::free ? 0.5 : 1.0;
+  const double from = w.left.kind == EndKind::free ? 0.5 : 0.0,
+               to = w.right.kind == EndKind::free ? 0.5 : 1.0;
   Vector2 place(0.1 * length, -0.05 * length);
   double s = 0.0;
   for (std::size_t i = 0; i < w.vertices(); ++i) {
@@ -269,12 +275,13 @@ inline const char* name_of(EndKind kind) {
 inline std::string described(const PlanarProblem& p) {
   const PlanarWire& w = p.wire;
   std::string text = fmt::format(
-      "{} edges, grading {:.9g}, {}, length {:.9g} m, EI {:.9g}, EA {:.9g}, natural {:.9g}, {:.9g} kg/m, damping "
+      "{} edges, grading {:.9g}, {}, length {:.9g} m, EI {:.9g}, EA {:.9g}, natural {:.9g}, {:.9g} kg/m, "
+      "damping "
       "{:.9g} {:.9g} "
       "{:.9g}, gravity {:.9g} {:.9g}, {} at {:.9g} to {} at {:.9g}, {}, {:.9g} s, start",
-      w.edges(), p.grading, w.has_curvatures ? "higher order" : "vertices", w.length(), w.bending, w.axial, w.natural,
-      w.mass_per_length, w.bending_time, w.axial_time, w.mass_rate, w.gravity.x(), w.gravity.y(), name_of(w.left.kind),
-      w.left.direction, name_of(w.right.kind), w.right.direction,
+      w.edges(), p.grading, w.has_curvatures ? "higher order" : "vertices", w.length(), w.bending, w.axial,
+      w.natural, w.mass_per_length, w.bending_time, w.axial_time, w.mass_rate, w.gravity.x(), w.gravity.y(),
+      name_of(w.left.kind), w.left.direction, name_of(w.right.kind), w.right.direction,
       p.plane.axes.isIdentity() ? "across z" : "in an oblique plane", p.duration);
   for (std::size_t i = 0; i < p.x.size(); ++i)
     text += fmt::format(" ({:.9g} {:.9g}; {:.9g} {:.9g})", p.x[i].x(), p.x[i].y(), p.v[i].x(), p.v[i].y());

@@ -89,7 +89,8 @@ SpatialProblem random_spatial_wire(Draws& draw) {
   };
   const double strain = draw.between(-10.0, 10.0) * w.bending / square / w.axial;
   const Vector3 first = between(0.1 * length * slowest), second = between(0.1 * length * slowest);
-  const double from = w.left.kind == EndKind::free ? 0.5 : 0.0, to = w.right.kind == EndKind::free ? 0.5 : 1.0;
+  const double from = w.left.kind == EndKind::free ? 0.5 : 0.0,
+               to = w.right.kind == EndKind::free ? 0.5 : 1.0;
   Vector3 place = between(0.1 * length);
   double s = 0.0;
   for (std::size_t i = 0; i < w.vertices(); ++i) {
@@ -124,7 +125,8 @@ std::string described(const SpatialProblem& p) {
                        v3(e.director));
   };
   std::string text = fmt::format(
-      "{} edges, grading {:.9g}, EI {:.9g}, GJ {:.9g}, EA {:.9g}, natural twist {:.9g}, {:.9g} kg/m, damping {:.9g} "
+      "{} edges, grading {:.9g}, EI {:.9g}, GJ {:.9g}, EA {:.9g}, natural twist {:.9g}, {:.9g} kg/m, damping "
+      "{:.9g} "
       "{:.9g}, gravity {}, {} to {}, {:.9g} s, edges and start",
       w.edges(), p.grading, w.bending, w.torsional, w.axial, w.natural_twist, w.mass_per_length, w.axial_time,
       w.mass_rate, v3(w.gravity), end(w.left), end(w.right), p.duration);
@@ -140,12 +142,14 @@ Verdict judge_spatial(const SpatialProblem& p) {
   append(start, p.x);
   append(start, p.v);
   const auto equations = [&p, n]() -> Equations {
-    const auto rate = [&w = p.wire, n, x = p.x, v = p.v, f = p.v](const State& s, State& rates, double) mutable {
+    const auto rate = [&w = p.wire, n, x = p.x, v = p.v, f = p.v](const State& s, State& rates,
+                                                                  double) mutable {
       take(s, 0, x);
       take(s, 3 * n, v);
       std::fill(f.begin(), f.end(), Vector3(0.0, 0.0, 0.0));
       add_spatial_forces(w, x, v, f);
-      for (std::size_t i = 0; i < n; ++i) f[i] = w.holds(i) ? Vector3(0.0, 0.0, 0.0) : Vector3(f[i] / w.mass(i));
+      for (std::size_t i = 0; i < n; ++i)
+        f[i] = w.holds(i) ? Vector3(0.0, 0.0, 0.0) : Vector3(f[i] / w.mass(i));
       rates.clear();
       append(rates, v);
       append(rates, f);
@@ -168,7 +172,8 @@ Verdict judge_spatial(const SpatialProblem& p) {
   properties.natural_twist = w.natural_twist;
   const auto end = [](const SpatialWireEnd& e, const Vector3& at) {
     wire::SpatialEnd s;
-    s.kind = e.kind == EndKind::pin && e.holds_twist ? wire::SpatialEnd::Kind::twisting_pin : simulated_kind(e.kind);
+    s.kind = e.kind == EndKind::pin && e.holds_twist ? wire::SpatialEnd::Kind::twisting_pin
+                                                     : simulated_kind(e.kind);
     s.position = at;
     s.direction = e.direction;
     s.director = e.director;

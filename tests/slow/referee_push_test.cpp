@@ -89,12 +89,14 @@ coupling::PushProblem random_push(Draws& draw) {
 
 std::string described(const coupling::PushProblem& p, int elements) {
   std::string text = fmt::format(
-      "{} edges, EI {:.9g} N m^2, EA {:.9g} N, d {:.9g} m, length {:.12g} m, span {:.12g} m, natural curvature {:.9g} "
+      "{} edges, EI {:.9g} N m^2, EA {:.9g} N, d {:.9g} m, length {:.12g} m, span {:.12g} m, natural "
+      "curvature {:.9g} "
       "1/m, "
       "{}, at {:.12g} m, pusher radius {:.9g} m, friction {:.6g}, {}, travels [m]",
-      elements, p.wire.bending_stiffness(), p.wire.axial_stiffness(), p.wire.diameter, p.wire.length, p.mount.span,
-      p.wire.natural_curvature, p.mount.kind == wire::MountKind::pinned ? "pinned" : "clamped", p.contact_position,
-      p.pusher.radius, p.pusher.friction, p.pusher.direction == coupling::PushDirection::inward ? "inward" : "outward");
+      elements, p.wire.bending_stiffness(), p.wire.axial_stiffness(), p.wire.diameter, p.wire.length,
+      p.mount.span, p.wire.natural_curvature, p.mount.kind == wire::MountKind::pinned ? "pinned" : "clamped",
+      p.contact_position, p.pusher.radius, p.pusher.friction,
+      p.pusher.direction == coupling::PushDirection::inward ? "inward" : "outward");
   for (const double d : p.travel) text += fmt::format(" {:.12g}", d);
   return text;
 }
@@ -104,8 +106,8 @@ validation::ElasticaPush elastica_of(const coupling::PushProblem& p, double fric
   validation::ElasticaPush e;
   e.wire = {p.wire.length, p.wire.bending_stiffness(), p.wire.axial_stiffness(), -p.wire.natural_curvature};
   e.span = p.mount.span;
-  e.ends =
-      p.mount.kind == wire::MountKind::pinned ? validation::ElasticaEnds::pinned : validation::ElasticaEnds::clamped;
+  e.ends = p.mount.kind == wire::MountKind::pinned ? validation::ElasticaEnds::pinned
+                                                   : validation::ElasticaEnds::clamped;
   e.side = p.pusher.direction == coupling::PushDirection::inward ? validation::ElasticaSide::against_bulge
                                                                  : validation::ElasticaSide::with_bulge;
   e.position = p.contact_position;
@@ -122,7 +124,8 @@ double end_of_unique_path(const coupling::PushCurve& curve) {
   using Kind = coupling::PushEvent::Kind;
   double end = std::numeric_limits<double>::infinity();
   for (const coupling::PushEvent& e : curve.events) {
-    if (e.kind == Kind::fold || e.kind == Kind::bifurcation || e.kind == Kind::snap || e.kind == Kind::lift_off)
+    if (e.kind == Kind::fold || e.kind == Kind::bifurcation || e.kind == Kind::snap ||
+        e.kind == Kind::lift_off)
       end = std::min(end, e.travel);
   }
   return end;
@@ -198,7 +201,8 @@ void compare(const coupling::PushProblem& p, int elements, int index, Comparison
     if (found == result.curve.points.end()) break;
     // Friction: the elastica slides, at a point.
     if (rubs && (!found->slipping || found->wrapped_length > 0.0)) continue;
-    const double error = result.discretisation_error[static_cast<std::size_t>(found - result.curve.points.begin())];
+    const double error =
+        result.discretisation_error[static_cast<std::size_t>(found - result.curve.points.begin())];
     double force = std::numeric_limits<double>::infinity();
     for (const auto& path : references) {
       if (i >= path.size() || (rubs && path[i].wrapped)) continue;
@@ -209,7 +213,8 @@ void compare(const coupling::PushProblem& p, int elements, int index, Comparison
       continue;
     }
     const double difference = std::abs(found->force - force);
-    const double largest = std::max({std::abs(force), std::abs(found->tension_left), std::abs(found->tension_right)});
+    const double largest =
+        std::max({std::abs(force), std::abs(found->tension_left), std::abs(found->tension_right)});
     const double stated = error + floor_share * largest;
     const double limit = stated + unseen_share * std::pow(256.0 / elements, 3) * largest;
     Count& count = sum.by_edges[elements];
@@ -218,8 +223,8 @@ void compare(const coupling::PushProblem& p, int elements, int index, Comparison
     if (difference <= sum.worst * limit) continue;
     sum.worst = difference / limit;
     sum.worst_text =
-        fmt::format("{}: at {:.12g} m {:.10g} N, elastica {:.10g} N, stated error {:.3g} N, limit {:.3g} N", text,
-                    p.travel[i], found->force, force, error, limit);
+        fmt::format("{}: at {:.12g} m {:.10g} N, elastica {:.10g} N, stated error {:.3g} N, limit {:.3g} N",
+                    text, p.travel[i], found->force, force, error, limit);
     if (difference > limit) sum.failures.push_back(sum.worst_text);
   }
 }

@@ -62,8 +62,8 @@ inline Complex3 carried(const Complex3& v, const Complex3& a, const Complex3& b)
 ///   E = sum EA e^2 h/2 + sum EI |kb|^2/(2 l) + GJ/(2 L) (turn - natural L)^2
 /// Twist is quasi-static, so its torque is the same in all cells: what counts is the turn of the right end's director against that of the
 /// left one, carried along the edges. No torque where an end lets the wire turn.
-inline void add_spatial_forces(const SpatialWire& w, const std::vector<Vector3>& x, const std::vector<Vector3>& v,
-                               std::vector<Vector3>& f) {
+inline void add_spatial_forces(const SpatialWire& w, const std::vector<Vector3>& x,
+                               const std::vector<Vector3>& v, std::vector<Vector3>& f) {
   constexpr double step = 1e-30;
   const std::size_t n = w.edges();
   for (std::size_t e = 0; e < n; ++e) {

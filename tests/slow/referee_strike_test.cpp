@@ -81,16 +81,21 @@ StrikeProblem random_strike(Draws& draw) {
 std::string described(const StrikeProblem& s) {
   const Striker& b = s.striker;
   const Rubbing& r = b.rubbing;
-  const char* law = r.law == Rubbing::Law::none ? "no friction" : r.law == Rubbing::Law::smooth ? "smooth" : "bristles";
+  const char* law = r.law == Rubbing::Law::none     ? "no friction"
+                    : r.law == Rubbing::Law::smooth ? "smooth"
+                                                    : "bristles";
   return fmt::format(
-      "ball of {:.9g} m at ({:.9g} {:.9g}) in a body of {:.9g} kg, {:.9g} kg m^2, at ({:.9g} {:.9g}), turned by "
+      "ball of {:.9g} m at ({:.9g} {:.9g}) in a body of {:.9g} kg, {:.9g} kg m^2, at ({:.9g} {:.9g}), turned "
+      "by "
       "{:.9g}, moving at "
-      "({:.9g} {:.9g}), {:.9g} rad/s, wire's radius {:.9g} m, foundation {:.9g} N/m^2, {:.9g} s/m, {} {:.6g} {:.6g} "
+      "({:.9g} {:.9g}), {:.9g} rad/s, wire's radius {:.9g} m, foundation {:.9g} N/m^2, {:.9g} s/m, {} {:.6g} "
+      "{:.6g} "
       "{:.6g} {:.6g} "
       "{:.6g} {:.6g}; wire: {}",
-      b.radius, b.offset.x(), b.offset.y(), b.mass, b.inertia, s.body.place.x(), s.body.place.y(), s.body.angle,
-      s.body.velocity.x(), s.body.velocity.y(), s.body.spin, b.wire_radius, b.modulus, b.damping, law, r.resting,
-      r.sliding, r.resting_speed, r.sliding_speed, r.give, r.time, described(s.planar));
+      b.radius, b.offset.x(), b.offset.y(), b.mass, b.inertia, s.body.place.x(), s.body.place.y(),
+      s.body.angle, s.body.velocity.x(), s.body.velocity.y(), s.body.spin, b.wire_radius, b.modulus,
+      b.damping, law, r.resting, r.sliding, r.resting_speed, r.sliding_speed, r.give, r.time,
+      described(s.planar));
 }
 
 /// Equations of motion of wire and body. State: places of the wire, of the body, its angle times the lever; as many velocities; bristles;
@@ -98,7 +103,12 @@ std::string described(const StrikeProblem& s) {
 class StrikeEquations {
  public:
   explicit StrikeEquations(const StrikeProblem& s)
-      : problem_(s), forces_(s.planar.wire), contact_(s.planar.wire, s.striker), x_(s.planar.x), v_(x_), f_(x_) {}
+      : problem_(s),
+        forces_(s.planar.wire),
+        contact_(s.planar.wire, s.striker),
+        x_(s.planar.x),
+        v_(x_),
+        f_(x_) {}
 
   void rate(const State& state, State& rates) {
     const PlanarWire& w = problem_.planar.wire;
@@ -132,7 +142,8 @@ class StrikeEquations {
     return std::max(gap / (3.0 * speed), 1e-6 * problem_.planar.duration);
   }
 
-  double nearest_mount = std::numeric_limits<double>::infinity();  ///< way from what has touched to a mount [m]
+  double nearest_mount =
+      std::numeric_limits<double>::infinity();  ///< way from what has touched to a mount [m]
 
  private:
   StrikerState read(const State& state) {
@@ -164,7 +175,8 @@ coupling::Motion simulated(const StrikeProblem& s) {
   body.properties.inertia = Vector3d(0.7, 0.8, 1.0).asDiagonal();
   body.properties.inertia *= b.inertia;
   body.start.position = p.plane.point(s.body.place);
-  body.start.orientation = Eigen::Quaterniond(p.plane.axes) * Eigen::AngleAxisd(s.body.angle, Vector3d::UnitZ());
+  body.start.orientation =
+      Eigen::Quaterniond(p.plane.axes) * Eigen::AngleAxisd(s.body.angle, Vector3d::UnitZ());
   body.start.velocity = p.plane.point(s.body.velocity);
   body.start.spin = {0.0, 0.0, s.body.spin};
   motion.bodies.push_back(body);
@@ -175,14 +187,14 @@ coupling::Motion simulated(const StrikeProblem& s) {
   contact.foundation = {b.modulus, b.damping};
   const Rubbing& r = b.rubbing;
   if (r.law != Rubbing::Law::none) {
-    contact.friction = {
-        r.resting,
-        r.sliding,
-        r.resting_speed,
-        r.sliding_speed,
-        r.law == Rubbing::Law::smooth ? coupling::ContactFriction::smooth : coupling::ContactFriction::stick_slip,
-        r.give,
-        r.time};
+    contact.friction = {r.resting,
+                        r.sliding,
+                        r.resting_speed,
+                        r.sliding_speed,
+                        r.law == Rubbing::Law::smooth ? coupling::ContactFriction::smooth
+                                                      : coupling::ContactFriction::stick_slip,
+                        r.give,
+                        r.time};
   }
   motion.contacts.push_back(contact);
   return motion;
@@ -213,7 +225,8 @@ Verdict judge_strike(const StrikeProblem& s) {
             [shared](const State& state) { return shared->longest_step(state); }};
   };
   const Reference reference(
-      equations, start, places, [&](std::size_t k) { return k >= 2 * n || !p.wire.holds(k / 2); }, p.duration);
+      equations, start, places, [&](std::size_t k) { return k >= 2 * n || !p.wire.holds(k / 2); },
+      p.duration);
   coupling::MotionOptions options;
   options.duration = p.duration;
   const PlanarContact contact(p.wire, s.striker);
@@ -228,7 +241,8 @@ Verdict judge_strike(const StrikeProblem& s) {
         const Eigen::Matrix3d turned = p.plane.axes.transpose() * b.orientation.toRotationMatrix();
         angle += std::remainder(std::atan2(turned(1, 0), turned(0, 0)) - angle, 2.0 * pi);
         const StrikerState body{p.plane.seen(b.position), p.plane.seen(b.velocity), angle, b.spin.z()};
-        const double force = contact.add(x, rates, body, State(n, 0.0), forces).normal;  // without its friction
+        const double force =
+            contact.add(x, rates, body, State(n, 0.0), forces).normal;  // without its friction
         largest_force = std::max(largest_force, force);
         of_force = std::max(of_force, std::abs(sample.contacts[0].normal_force - force));
         State state;
@@ -251,13 +265,15 @@ Verdict judge_strike(const StrikeProblem& s) {
         }
         return std::numeric_limits<double>::infinity();
       });
-  v.text += fmt::format("; normal forces differ by up to {:.2e} of {:.4g} N from the law", of_force, largest_force);
+  v.text +=
+      fmt::format("; normal forces differ by up to {:.2e} of {:.4g} N from the law", of_force, largest_force);
   if (largest_force > 0.0) raise(v.of_limit, of_force / (force_share * largest_force));
   const State& end = reference.states.back();
   const Vector2 expected(end[end.size() - 2], end[end.size() - 1]);
   if (v.last + 1 == reference.states.size()) {
     const double difference = (impulse - expected).norm();
-    v.text += fmt::format("; impulse {:.6g} {:.6g} N s, differs by {:.2e}", expected.x(), expected.y(), difference);
+    v.text +=
+        fmt::format("; impulse {:.6g} {:.6g} N s, differs by {:.2e}", expected.x(), expected.y(), difference);
     raise(v.of_limit, difference / (v.allowed * reference.speed * mass));
   }
   // The law of mounts, which a ball near them meets, is not written here (M.35).

@@ -95,7 +95,8 @@ EdgeFlexibility<S> smooth_flexibility(S z) {
   const S x = 0.25 * z;
   if (std::abs(x) < 0.01) {
     constexpr double a[] = {1.0, -1.0 / 3.0, 2.0 / 15.0, -17.0 / 315.0, 62.0 / 2835.0, -1382.0 / 155925.0};
-    constexpr double b[] = {1.0 / 3.0, -1.0 / 45.0, 2.0 / 945.0, -1.0 / 4725.0, 2.0 / 93555.0, -1382.0 / 638512875.0};
+    constexpr double b[] = {1.0 / 3.0,     -1.0 / 45.0,   2.0 / 945.0,
+                            -1.0 / 4725.0, 2.0 / 93555.0, -1382.0 / 638512875.0};
     EdgeFlexibility<S> f{0.0, 0.0, 0.0, 0.0};
     for (int k = 5; k >= 0; --k) {
       f.c_slope = f.c_slope * x + f.c;
@@ -155,9 +156,9 @@ class PlanarForces {
       const Vector2 after_rate = i < w.edges() ? Vector2(v[i + 1] - v[i]) : Vector2::Zero();
       const double rate = k.by_before.dot(before_rate) + k.by_after.dot(after_rate), l = w.cell(i);
       // By kappa = 2 tan(phi/2): with curvatures as unknowns the moment EI (k - n) acts on phi.
-      const double moment = w.has_curvatures
-                                ? w.bending * (unknowns_[index(i)] - w.natural) / (1.0 + 0.25 * k.kappa * k.kappa)
-                                : w.bending / l * (k.kappa - w.natural * l);
+      const double moment =
+          w.has_curvatures ? w.bending * (unknowns_[index(i)] - w.natural) / (1.0 + 0.25 * k.kappa * k.kappa)
+                           : w.bending / l * (k.kappa - w.natural * l);
       const double total = moment + w.bending_time * w.bending / l * rate;
       if (i > 0) {
         f[i - 1] += total * k.by_before;
@@ -185,7 +186,9 @@ class PlanarForces {
   }
 
   [[nodiscard]] Turn turn(std::size_t i, const Places& x) const {
-    const auto mount = [](const PlanarEnd& end) { return Vector2(std::cos(end.direction), std::sin(end.direction)); };
+    const auto mount = [](const PlanarEnd& end) {
+      return Vector2(std::cos(end.direction), std::sin(end.direction));
+    };
     Turn t;
     const bool left = i == 0, right = i == wire_.edges();
     t.exists = !(left && wire_.left.kind != EndKind::clamp) && !(right && wire_.right.kind != EndKind::clamp);
@@ -215,7 +218,8 @@ class PlanarForces {
     Eigen::VectorXd r = Eigen::VectorXd::Zero(z.size());
     for (std::size_t e = 0; e < w.edges(); ++e) {
       const double h = w.rest[e], tension = z[tension_index(e)], near = z[index(e)], far = z[index(e + 1)];
-      const EdgeFlexibility<double> f = edge_flexibility(tension * (1.0 + tension / w.axial) * h * h / w.bending);
+      const EdgeFlexibility<double> f =
+          edge_flexibility(tension * (1.0 + tension / w.axial) * h * h / w.bending);
       const double sum = near + far, difference = near - far;
       r[index(e)] -= 0.5 * h * (f.c * sum + f.d * difference);
       r[index(e + 1)] -= 0.5 * h * (f.c * sum - f.d * difference);

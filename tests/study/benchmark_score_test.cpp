@@ -63,7 +63,8 @@ TEST(BenchmarkScore, SaysWhatItDoesNotCoverAndWhoDoesNotTouch) {
 TEST(BenchmarkScore, RefusesWhatIsNoHistory) {
   const Track good = half_wave(1.0, 0.0, 10);
   EXPECT_THROW(static_cast<void>(score_of({{0.0}, {1.0}}, good, {})), std::invalid_argument);
-  EXPECT_THROW(static_cast<void>(score_of({{0.0, 2.0, 1.0}, {1.0, 1.0, 1.0}}, good, {})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(score_of({{0.0, 2.0, 1.0}, {1.0, 1.0, 1.0}}, good, {})),
+               std::invalid_argument);
   EXPECT_THROW(static_cast<void>(score_of({{10.0, 11.0}, {1.0, 1.0}}, good, {})), std::invalid_argument);
 }
 

@@ -166,7 +166,8 @@ TEST(Distribution, KnownValues) {
   EXPECT_NEAR(normal_probability(1.0), 0.8413447461, 1e-10);
   EXPECT_NEAR(normal_quantile(0.975), 1.9599639845, 1e-10);
   EXPECT_NEAR(quantile({Distribution::Shape::triangular, 0.0, 3.0, 1.0}, 1.0 / 3.0), 1.0, 1e-12);
-  EXPECT_NEAR(quantile({Distribution::Shape::lognormal, 0.0, 1.0}, normal_probability(1.0)), std::exp(1.0), 1e-12);
+  EXPECT_NEAR(quantile({Distribution::Shape::lognormal, 0.0, 1.0}, normal_probability(1.0)), std::exp(1.0),
+              1e-12);
 }
 
 }  // namespace

@@ -14,14 +14,16 @@ using namespace benchmarks;
 TEST(SlowIntervals, OfSubsetSimulations) {
   for (const double probability : {1e-2, 1e-4, 1e-6}) {
     for (const LimitFunction& limit : limit_functions(probability))
-      EXPECT_NEAR(subset_coverage(limit, 1000, {1, 200}).share(), 0.95, 0.046) << limit.name << ' ' << probability;
+      EXPECT_NEAR(subset_coverage(limit, 1000, {1, 200}).share(), 0.95, 0.046)
+          << limit.name << ' ' << probability;
   }
 }
 
 // Hits alone have no levels; Clopper and Pearson's interval holds at least as often as it says.
 TEST(Intervals, OfYesOrNoHoldAtLeastAsOften) {
   for (const double probability : {1e-2, 1e-4, 1e-6})
-    EXPECT_GE(subset_coverage(yes_or_no(limit_functions(probability)[0]), 1000, {1, 50}).share(), 0.95 - 0.03 * 3.0);
+    EXPECT_GE(subset_coverage(yes_or_no(limit_functions(probability)[0]), 1000, {1, 50}).share(),
+              0.95 - 0.03 * 3.0);
 }
 
 // The six indices of a study are correlated: counted as one study each, 4.6 % as above.

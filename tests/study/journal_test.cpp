@@ -1,4 +1,4 @@
-#include "study/journal.hpp"
+#include "study/rank_journal.hpp"
 
 #include "base/errors.hpp"
 #include "base/files.hpp"
@@ -64,10 +64,37 @@ TEST_F(JournalTest, LastWordsReadLikeOthers) {
 }
 
 TEST_F(JournalTest, RefusesAnotherStudy) {
-  { Journal journal(file(), "study 1", 10); }
+  { Journal(file(), "study 1", 10).append(3, "three"); }
   EXPECT_THAT(test::refusal([&] { return Journal(file(), "study 2", 10); }),
               testing::HasSubstr("belongs to another study"));
-  EXPECT_EQ(Journal(file(), "study 1", 10).finished(), 0U);  // the file is as it was
+  EXPECT_EQ(Journal(file(), "study 1", 10).finished(), 1U);  // the file is as it was
+}
+
+// A sweep whose input is rejected leaves nothing.
+TEST_F(JournalTest, AFileWithoutCasesIsRemoved) {
+  { const Journal journal(file(), "s", 10); }
+  EXPECT_FALSE(std::filesystem::exists(file()));
+  { Journal(file(), "s", 10).append_at_the_end(3, "three"); }
+  { const Journal look(file(), "s", 10, Journal::Use::look); }
+  EXPECT_TRUE(std::filesystem::exists(file()));
+}
+
+// The cases that ended other ranks go into the journal; the file of a rank that is still there and one of another study stay.
+TEST_F(JournalTest, TakesTheCasesOfRanksThatHaveEnded) {
+  Journal(rank_journal(file(), 1), "s", 10).append_at_the_end(4, "crashed");
+  Journal(rank_journal(file(), 2), "another", 10).append(5, "of another study");
+  Journal there(rank_journal(file(), 12), "s", 10);
+  there.append(6, "of a rank that is there");
+  write("other.rank1.journal", "of another journal");
+  Journal journal(file(), "s", 10);
+  journal.append(1, "one");
+  take_rank_journals(journal, "s", 10);
+  EXPECT_EQ(journal.finished(), 2U);
+  EXPECT_EQ(journal.result(4), "crashed");
+  EXPECT_FALSE(std::filesystem::exists(path("cases.rank1.journal")));
+  EXPECT_TRUE(std::filesystem::exists(path("cases.rank2.journal")));
+  EXPECT_TRUE(std::filesystem::exists(path("cases.rank12.journal")));
+  EXPECT_TRUE(std::filesystem::exists(path("other.rank1.journal")));
 }
 
 TEST_F(JournalTest, OneAtATimeAppendsAndOthersMayLook) {

@@ -41,7 +41,8 @@ class Refinement {
     for (std::uint64_t k = 0; k < grid_.points(); ++k) {
       const std::optional<Seen> inferred = grid_.inferred(k);
       const Seen true_one = truth(k);
-      count += inferred && (inferred->word != true_one.word || std::abs(inferred->number - true_one.number) > bound);
+      count += inferred &&
+               (inferred->word != true_one.word || std::abs(inferred->number - true_one.number) > bound);
     }
     return count;
   }
@@ -62,7 +63,8 @@ class Refinement {
 
 double radius(const std::vector<std::uint64_t>& place, double centre) {
   double square = 0.0;
-  for (const std::uint64_t x : place) square += (static_cast<double>(x) - centre) * (static_cast<double>(x) - centre);
+  for (const std::uint64_t x : place)
+    square += (static_cast<double>(x) - centre) * (static_cast<double>(x) - centre);
   return std::sqrt(square);
 }
 
@@ -76,8 +78,9 @@ TEST(RefinedGrid, FollowsTheEdgeOfADisc) {
   for (const int levels : {2, 3, 4, 5}) {
     const std::uint64_t points = (10U << static_cast<unsigned>(levels)) + 1;
     const double steps = static_cast<double>(points - 1);
-    const Refinement disc({{{points, true}, {points, true}}, levels, 0.0},
-                          [&](const auto& place) { return yes_or_no(radius(place, 0.47 * steps) < 0.33 * steps); });
+    const Refinement disc({{{points, true}, {points, true}}, levels, 0.0}, [&](const auto& place) {
+      return yes_or_no(radius(place, 0.47 * steps) < 0.33 * steps);
+    });
     EXPECT_EQ(disc.wrong(), 0U);
     EXPECT_EQ(disc.grid().told() + disc.inferred(), points * points);
     // A digital circle passes 8 r cells. Of each level two cases a cell were enough, and every level has half of the next one's.
@@ -160,13 +163,15 @@ TEST(RefinedGrid, NothingIsInferredBesideWhatDiffers) {
     const Refinement blobs({{{33, true}, {33, true}}, 3, 0.0}, [seed](const auto& place) {
       const double x = 0.2 * static_cast<double>(place[0]), y = 0.2 * static_cast<double>(place[1]);
       const double s = static_cast<double>(seed);
-      return yes_or_no(std::sin(x + s) + std::sin(1.7 * y + 2.0 * s) + std::sin(1.3 * (x - y) + 3.0 * s) > 0.4);
+      return yes_or_no(std::sin(x + s) + std::sin(1.7 * y + 2.0 * s) + std::sin(1.3 * (x - y) + 3.0 * s) >
+                       0.4);
     });
     const auto said = [&](std::uint64_t k) { return blobs.grid().inferred(k).value_or(blobs.truth(k)).word; };
     for (std::uint64_t k = 0; k < blobs.grid().points(); ++k) {
       for (const std::uint64_t next : {k % 33 < 32 ? k + 1 : k, k / 33 < 32 ? k + 33 : k}) {
         const bool inferred = blobs.grid().inferred(k) || blobs.grid().inferred(next);
-        ASSERT_TRUE(said(k) == said(next) || !inferred) << "seed " << seed << ", cases " << k << " and " << next;
+        ASSERT_TRUE(said(k) == said(next) || !inferred)
+            << "seed " << seed << ", cases " << k << " and " << next;
       }
     }
     EXPECT_LT(blobs.grid().told(), 33U * 33U / 2U);

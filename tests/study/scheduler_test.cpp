@@ -70,8 +70,8 @@ double simulated_time(std::uint64_t cases, int workers, double case_s, double an
     const Request r = requests.top();
     requests.pop();
     const auto w = static_cast<std::size_t>(r.worker);
-    leader =
-        std::max(leader, r.time) + answer_s + 1e-6 * static_cast<double>(has[w].size());  // a result is taken in 1 us
+    leader = std::max(leader, r.time) + answer_s +
+             1e-6 * static_cast<double>(has[w].size());  // a result is taken in 1 us
     for (const std::uint64_t k : has[w]) scheduler.finished(r.worker, k, each[w]);
     has[w] = scheduler.take(r.worker);
     if (has[w].empty()) continue;
@@ -155,7 +155,8 @@ class ThreadRanks : public Ranks {
 
 std::string squared(std::uint64_t index, const std::vector<double>& values) {
   std::this_thread::sleep_for(std::chrono::microseconds(300));
-  return std::to_string(index * index) + (values.empty() ? "" : "+" + std::to_string(static_cast<int>(values[0])));
+  return std::to_string(index * index) +
+         (values.empty() ? "" : "+" + std::to_string(static_cast<int>(values[0])));
 }
 
 TEST(RankWork, EveryCaseOnceWhateverTheRanks) {

@@ -16,8 +16,8 @@ namespace {
 
 using Function = std::function<double(const std::vector<double>&)>;
 
-SobolIndices indices_of(std::size_t variables, Distribution distribution, std::uint64_t rows, const Function& f,
-                        std::uint64_t seed = 1) {
+SobolIndices indices_of(std::size_t variables, Distribution distribution, std::uint64_t rows,
+                        const Function& f, std::uint64_t seed = 1) {
   std::vector<Variable> all;
   for (std::size_t j = 0; j < variables; ++j) all.push_back({"x", {"x"}, {}, distribution});
   DesignSettings s;
@@ -74,7 +74,9 @@ TEST(SobolIndices, GFunction) {
 }
 
 TEST(SobolIndices, RowsWithAFailedCaseAreDropped) {
-  const auto f = [](std::uint64_t k) { return k == 5 ? std::nullopt : std::optional(static_cast<double>(k * k % 7)); };
+  const auto f = [](std::uint64_t k) {
+    return k == 5 ? std::nullopt : std::optional(static_cast<double>(k * k % 7));
+  };
   const SobolIndices s = sobol_indices(2, 10, f);
   EXPECT_EQ(s.rows, 9U);
   EXPECT_EQ(s.dropped, 1U);
@@ -90,7 +92,8 @@ TEST(Proportion, KnownIntervals) {
   EXPECT_EQ(proportion_interval(0, 0).high, 1.0);
 }
 
-SubsetSimulation simulated(std::size_t dimension, std::uint64_t cases, std::uint64_t seed, const Function& margin) {
+SubsetSimulation simulated(std::size_t dimension, std::uint64_t cases, std::uint64_t seed,
+                           const Function& margin) {
   SubsetSimulation simulation({.dimension = dimension, .cases = cases, .seed = seed});
   while (!simulation.finished()) {
     std::vector<std::optional<double>> margins;

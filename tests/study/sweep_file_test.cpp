@@ -19,7 +19,9 @@ using testing::HasSubstr;
 
 class SweepFileTest : public test::FolderFixture {
  protected:
-  [[nodiscard]] SweepFile read(const std::string& text) const { return read_sweep_file(write("sweep.toml", text)); }
+  [[nodiscard]] SweepFile read(const std::string& text) const {
+    return read_sweep_file(write("sweep.toml", text));
+  }
   [[nodiscard]] std::string problems(const std::string& text) const {
     return test::refusal([&] { return read(text); });
   }
@@ -76,9 +78,10 @@ of = "g"
 above = 1.0
 below = 2.0
 )");
-  for (const char* part : {"sweep.toml:3: design", "sweep.toml:4: casess", "sigma = -1", "varied twice", "low < high",
-                           "either key or keys", "one of values, range", "collect.a", "collect.f", "min, max, sum",
-                           "collect.t", "differs from run to run", "limits[1].of = \"g\"", "either above or below"})
+  for (const char* part :
+       {"sweep.toml:3: design", "sweep.toml:4: casess", "sigma = -1", "varied twice", "low < high",
+        "either key or keys", "one of values, range", "collect.a", "collect.f", "min, max, sum", "collect.t",
+        "differs from run to run", "limits[1].of = \"g\"", "either above or below"})
     EXPECT_THAT(words, HasSubstr(part));
 }
 
@@ -122,8 +125,9 @@ values = [1, 2, 3]
     return problems(text.replace(text.find(key), key.size(), by));
   };
   EXPECT_THAT(with("of = \"force\"", "of = \"forse\""), HasSubstr("did you mean force?"));
-  EXPECT_THAT(with("levels = 3", "levels = 4"), HasSubstr("one more than a multiple of 16, the steps in a first cell "
-                                                          "of [refine]: 49"));
+  EXPECT_THAT(with("levels = 3", "levels = 4"),
+              HasSubstr("one more than a multiple of 16, the steps in a first cell "
+                        "of [refine]: 49"));
   EXPECT_THAT(with("levels = 3", "levels = 17"), HasSubstr("levels = 17"));
   EXPECT_THAT(with("differs_by = 0.5", "differs_by = -0.5"), HasSubstr("differs_by = -0.5"));
   EXPECT_THAT(with("values = [1, 2, 3]", "range = [0.0, 1.0]\npoints = 80001"),
@@ -131,7 +135,8 @@ values = [1, 2, 3]
   EXPECT_THAT(with("points = 41", "points = 1"), HasSubstr("1 to 6 [[vary]]"));
   EXPECT_THAT(with("range = [0.0, 1.0]\npoints = 41", "values = [1, 2]"), HasSubstr("1 to 6 [[vary]]"));
   EXPECT_THAT(problems(std::string(head) +
-                       "design = \"sobol\"\ncases = 4\n[[vary]]\nkey = \"a\"\nuniform = [0.0, 1.0]\n" + refine + tail),
+                       "design = \"sobol\"\ncases = 4\n[[vary]]\nkey = \"a\"\nuniform = [0.0, 1.0]\n" +
+                       refine + tail),
               HasSubstr("refine, must be left out but with design = \"grid\""));
 }
 
@@ -171,11 +176,13 @@ from_trace = "trace.json"
   EXPECT_EQ(sweep.design.settings().correlation(0, 1), 0.8);
   EXPECT_THAT(
       problems(std::string(head) +
-               "design = \"sobol\"\ncases = 4\n[[vary]]\nkey = \"fixed\"\nfrom_trace = \"trace.json\"\n" + tail),
+               "design = \"sobol\"\ncases = 4\n[[vary]]\nkey = \"fixed\"\nfrom_trace = \"trace.json\"\n" +
+               tail),
       HasSubstr("there are: wire.axial_stiffness_N, wire.length_mm"));
-  EXPECT_THAT(problems(std::string(head) +
-                       "design = \"sobol\"\ncases = 4\n[[vary]]\nkey = \"fixed\"\nfrom_trace = \"no.json\"\n" + tail),
-              HasSubstr("no such file"));
+  EXPECT_THAT(
+      problems(std::string(head) +
+               "design = \"sobol\"\ncases = 4\n[[vary]]\nkey = \"fixed\"\nfrom_trace = \"no.json\"\n" + tail),
+      HasSubstr("no such file"));
 }
 
 TEST(Collect, FieldsOfAResult) {

@@ -11,8 +11,9 @@ Eigen::MatrixXd along_unit_quaternions(const Eigen::VectorXd& y, const std::vect
   return directions;
 }
 
-DerivativeError compare_dae_jacobian(numerics::DaeSystem& system, const Eigen::VectorXd& y, const Eigen::VectorXd& rate,
-                                     const Eigen::MatrixXd& directions, double scale) {
+DerivativeError compare_dae_jacobian(numerics::DaeSystem& system, const Eigen::VectorXd& y,
+                                     const Eigen::VectorXd& rate, const Eigen::MatrixXd& directions,
+                                     double scale) {
   constexpr double c = 50.0;
   const numerics::SparseMatrix& sparse = system.jacobian({0.0, y, rate}, c);
   Eigen::MatrixXd analytic(y.size(), y.size());

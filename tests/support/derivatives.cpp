@@ -26,8 +26,8 @@ Eigen::MatrixXd differences(const Function& f, const Eigen::VectorXd& x, Eigen::
 
 enum class Part { whole, symmetric };
 
-DerivativeError sweep(const Function& f, const Eigen::VectorXd& x, const Eigen::MatrixXd& analytic, double scale,
-                      Part part) {
+DerivativeError sweep(const Function& f, const Eigen::VectorXd& x, const Eigen::MatrixXd& analytic,
+                      double scale, Part part) {
   DerivativeError best;
   best.relative = std::numeric_limits<double>::infinity();
   const double size = std::max(analytic.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
@@ -57,8 +57,8 @@ DerivativeError compare_jacobian(const Function& f, const Eigen::VectorXd& x, co
   return sweep(f, x, analytic, scale, Part::whole);
 }
 
-DerivativeError compare_gradient(const std::function<double(const Eigen::VectorXd&)>& f, const Eigen::VectorXd& x,
-                                 const Eigen::VectorXd& analytic, double scale) {
+DerivativeError compare_gradient(const std::function<double(const Eigen::VectorXd&)>& f,
+                                 const Eigen::VectorXd& x, const Eigen::VectorXd& analytic, double scale) {
   const auto vector_valued = [&f](const Eigen::VectorXd& at) { return Eigen::VectorXd::Constant(1, f(at)); };
   return sweep(vector_valued, x, analytic.transpose(), scale, Part::whole);
 }

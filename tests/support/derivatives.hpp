@@ -19,9 +19,9 @@ struct DerivativeError {
 ///
 /// Error of the differences: h^4 of truncation, 1e-16/h of round-off; about 1e-12 at the best step when
 /// values and derivatives are of order one, so scale the problem to that.
-[[nodiscard]] DerivativeError compare_jacobian(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& f,
-                                               const Eigen::VectorXd& x, const Eigen::MatrixXd& analytic,
-                                               double scale = 1.0);
+[[nodiscard]] DerivativeError compare_jacobian(
+    const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& f, const Eigen::VectorXd& x,
+    const Eigen::MatrixXd& analytic, double scale = 1.0);
 
 /// The same for a scalar function and its gradient.
 [[nodiscard]] DerivativeError compare_gradient(const std::function<double(const Eigen::VectorXd&)>& f,

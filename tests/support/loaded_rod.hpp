@@ -52,7 +52,8 @@ template <class Rod, class State>
 }
 
 /// Load in (low, high) at which `unstable` becomes true, to a relative 1e-12.
-[[nodiscard]] inline double critical_load(double low, double high, const std::function<bool(double)>& unstable) {
+[[nodiscard]] inline double critical_load(double low, double high,
+                                          const std::function<bool(double)>& unstable) {
   while (high - low > 1e-12 * high) {
     const double middle = 0.5 * (low + high);
     (unstable(middle) ? high : low) = middle;
@@ -69,7 +70,8 @@ struct Extrapolation {
 [[nodiscard]] inline Extrapolation extrapolate(const std::array<double, 3>& values) {
   const double coarse = (4.0 * values[1] - values[0]) / 3.0;
   const double fine = (4.0 * values[2] - values[1]) / 3.0;
-  return {(8.0 * fine - coarse) / 7.0, std::log2(std::abs((values[1] - values[0]) / (values[2] - values[1])))};
+  return {(8.0 * fine - coarse) / 7.0,
+          std::log2(std::abs((values[1] - values[0]) / (values[2] - values[1])))};
 }
 
 }  // namespace snare::test

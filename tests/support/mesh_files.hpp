@@ -28,7 +28,8 @@ namespace snare::test {
 }
 
 /// A profile (distance from the axis, height), from the axis to the axis, turned about z in `around` facets.
-[[nodiscard]] inline coupling::TriangleMesh revolved_mesh(const std::vector<Eigen::Vector2d>& profile, int around) {
+[[nodiscard]] inline coupling::TriangleMesh revolved_mesh(const std::vector<Eigen::Vector2d>& profile,
+                                                          int around) {
   coupling::TriangleMesh m;
   m.name = "revolved";
   const auto rings = static_cast<int>(profile.size()) - 2;

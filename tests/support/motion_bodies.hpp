@@ -7,7 +7,8 @@
 namespace snare::test {
 
 /// A body at rest in the origin, with principal moments of inertia [kg m^2].
-[[nodiscard]] inline coupling::MotionBody block(const char* name, double mass, const Eigen::Vector3d& moments) {
+[[nodiscard]] inline coupling::MotionBody block(const char* name, double mass,
+                                                const Eigen::Vector3d& moments) {
   coupling::MotionBody body;
   body.name = name;
   body.properties.mass = mass;

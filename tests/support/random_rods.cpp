@@ -47,8 +47,8 @@ wire::SpatialRodProperties general_properties() {
   return p;
 }
 
-wire::PlanarState random_state(const wire::PlanarRod& rod, const wire::Controls& controls, std::mt19937& random,
-                               double amount) {
+wire::PlanarState random_state(const wire::PlanarRod& rod, const wire::Controls& controls,
+                               std::mt19937& random, double amount) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   const double disturbance = amount * controls.length() / rod.mesh().edges();
   wire::PlanarState state;
@@ -61,14 +61,14 @@ wire::PlanarState random_state(const wire::PlanarRod& rod, const wire::Controls&
   return state;
 }
 
-wire::SpatialState random_state(const wire::SpatialRod& rod, const wire::Controls& controls, std::mt19937& random,
-                                double amount) {
+wire::SpatialState random_state(const wire::SpatialRod& rod, const wire::Controls& controls,
+                                std::mt19937& random, double amount) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   const double disturbance = amount * controls.length() / rod.mesh().edges();
   Eigen::VectorXd q(rod.unknowns());
   for (int i = 0; i < rod.mesh().vertices(); ++i) {
-    q.segment<4>(4 * i) << rod.mesh().coordinate(i, controls) + disturbance * unit(random), disturbance * unit(random),
-        disturbance * unit(random), unit(random);
+    q.segment<4>(4 * i) << rod.mesh().coordinate(i, controls) + disturbance * unit(random),
+        disturbance * unit(random), disturbance * unit(random), unit(random);
   }
   return rod.make_state(q, controls);
 }

@@ -59,26 +59,28 @@ template <class Rod, class State>
   const double edge = rod.mesh().rest_length(0, state.controls);
   RodDerivativeErrors errors;
   errors.energy_mismatch = std::abs(at.energy - rod.energy(state));
-  errors.gradient =
-      compare_gradient([&](const VectorXd& q) { return rod.energy(moved_to(state, q)); }, state.q, at.gradient, edge);
-  errors.hessian = compare_symmetric_part(
-      [&](const VectorXd& q) { return assembled(rod, moved_to(state, q)).gradient; }, state.q, dense(at.hessian), edge);
+  errors.gradient = compare_gradient([&](const VectorXd& q) { return rod.energy(moved_to(state, q)); },
+                                     state.q, at.gradient, edge);
+  errors.hessian =
+      compare_symmetric_part([&](const VectorXd& q) { return assembled(rod, moved_to(state, q)).gradient; },
+                             state.q, dense(at.hessian), edge);
 
   const auto with_controls = [&](const VectorXd& controls) {
     State other = state;
     for (int k = 0; k < 3; ++k) other.controls[static_cast<std::size_t>(k)] = controls[k];
     return other;
   };
-  const VectorXd controls = Eigen::Vector3d(state.controls.left, state.controls.contact, state.controls.right);
+  const VectorXd controls =
+      Eigen::Vector3d(state.controls.left, state.controls.contact, state.controls.right);
   Eigen::MatrixXd columns(rod.unknowns(), 3);
   for (int k = 0; k < 3; ++k) columns.col(k) = at.control_columns[static_cast<std::size_t>(k)];
-  errors.control_columns =
-      compare_jacobian([&](const VectorXd& c) { return assembled(rod, with_controls(c)).gradient; }, controls, columns);
-  errors.control_gradient =
-      compare_gradient([&](const VectorXd& c) { return rod.energy(with_controls(c)); }, controls, at.control_gradient);
-  errors.control_hessian =
-      compare_jacobian([&](const VectorXd& c) { return VectorXd(assembled(rod, with_controls(c)).control_gradient); },
-                       controls, at.control_hessian);
+  errors.control_columns = compare_jacobian(
+      [&](const VectorXd& c) { return assembled(rod, with_controls(c)).gradient; }, controls, columns);
+  errors.control_gradient = compare_gradient([&](const VectorXd& c) { return rod.energy(with_controls(c)); },
+                                             controls, at.control_gradient);
+  errors.control_hessian = compare_jacobian(
+      [&](const VectorXd& c) { return VectorXd(assembled(rod, with_controls(c)).control_gradient); },
+      controls, at.control_hessian);
   return errors;
 }
 

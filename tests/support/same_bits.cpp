@@ -9,12 +9,14 @@ using coupling::MotionSample;
 using coupling::MotionState;
 
 std::vector<double> numbers(const coupling::MotionSample& s) {
-  std::vector<double> list{s.time, s.energy.kinetic, s.energy.strain, s.energy.dissipated, s.energy.integrator};
+  std::vector<double> list{s.time, s.energy.kinetic, s.energy.strain, s.energy.dissipated,
+                           s.energy.integrator};
   for (const auto& b : s.bodies) {
     for (int k = 0; k < 3; ++k)
       list.insert(list.end(), {b.position[k], b.velocity[k], b.spin[k], b.orientation.vec()[k]});
   }
-  for (const auto& c : s.contacts) list.insert(list.end(), {c.normal_force, c.gap, c.arc, c.force.x(), c.force.y()});
+  for (const auto& c : s.contacts)
+    list.insert(list.end(), {c.normal_force, c.gap, c.arc, c.force.x(), c.force.y()});
   for (const auto& w : s.wires) list.insert(list.end(), w.data(), w.data() + w.size());
   return list;
 }

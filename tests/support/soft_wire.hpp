@@ -41,7 +41,8 @@ namespace snare::test {
                                                  std::shared_ptr<const coupling::ContactShape> shape,
                                                  const Eigen::Vector3d& place, double speed, double mass) {
   coupling::Motion motion;
-  motion.wires.push_back({"wire", rod, coupling::straight_wire(rod, Eigen::Vector3d::Zero(), {0.2, 0.0, 0.0}), {}});
+  motion.wires.push_back(
+      {"wire", rod, coupling::straight_wire(rod, Eigen::Vector3d::Zero(), {0.2, 0.0, 0.0}), {}});
   coupling::MotionBody body;
   body.properties.mass = mass;
   body.properties.inertia = 4e-4 * mass * Eigen::Matrix3d::Identity();

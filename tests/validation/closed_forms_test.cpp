@@ -28,8 +28,10 @@ constexpr double kPrintedDigit = 0.05;  // half a unit of the last printed digit
 
 TEST(ClosedForms, TensionedClampedWireHasThePrintedStiffness) {
   for (const Stiffness& row : kPrinted) {
-    EXPECT_NEAR(tensioned_clamped_stiffness(kSolid, 50.0, kSpan, row.position), row.at_50_newton, kPrintedDigit);
-    EXPECT_NEAR(tensioned_clamped_stiffness(kSolid, 0.0, kSpan, row.position), row.without_tension, kPrintedDigit);
+    EXPECT_NEAR(tensioned_clamped_stiffness(kSolid, 50.0, kSpan, row.position), row.at_50_newton,
+                kPrintedDigit);
+    EXPECT_NEAR(tensioned_clamped_stiffness(kSolid, 0.0, kSpan, row.position), row.without_tension,
+                kPrintedDigit);
     EXPECT_NEAR(string_force(50.0, kSpan, row.position, 1.0), row.string, kPrintedDigit);
   }
 }

@@ -18,7 +18,8 @@ namespace {
 
 using std::numbers::pi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kForceError = 1e-9;       // relative, of the force: what elastica_push.hpp claims, set by rounding
+constexpr double kForceError =
+    1e-9;  // relative, of the force: what elastica_push.hpp claims, set by rounding
 constexpr double kLengthRounding = 1e-14;  // [m]: some hundred roundings of lengths of 0.1 m
 
 // Solid SUS-304, d 1.5 mm, E 193 GPa, 180 mm between clamps 175 mm apart.
@@ -75,7 +76,8 @@ double strain_energy(const ElasticaPush& problem, const ElasticaState& state) {
   }
   const ElasticaPoint& at = state.shape[pieces];
   return energy + (state.contact_end - state.contact_begin) * 0.5 *
-                      (at.moment * at.moment / wire.bending_stiffness + at.tension * at.tension / wire.axial_stiffness);
+                      (at.moment * at.moment / wire.bending_stiffness +
+                       at.tension * at.tension / wire.axial_stiffness);
 }
 
 // Gauss-Legendre, three points a panel.
@@ -215,9 +217,11 @@ TEST(ElasticaPush, ForcesBalance) {
       problem.radius = radius;
       const ElasticaState state = push(problem, 1e-3);
       ASSERT_TRUE(state.report.usable());
-      EXPECT_NEAR(state.force + state.reaction_left_y + state.reaction_right_y, 0.0, kForceError * state.force);
+      EXPECT_NEAR(state.force + state.reaction_left_y + state.reaction_right_y, 0.0,
+                  kForceError * state.force);
       // Clamped ends lie along the chord: the tensions are the pulls.
-      EXPECT_NEAR(state.tension_right - state.tension_left + state.force_along_chord, 0.0, kForceError * state.force);
+      EXPECT_NEAR(state.tension_right - state.tension_left + state.force_along_chord, 0.0,
+                  kForceError * state.force);
       // Moments about the left mount, end moments included.
       const double moment = state.contact_x * state.force - state.contact_y * state.force_along_chord +
                             problem.span * state.reaction_right_y - state.shape.front().moment +
@@ -236,9 +240,11 @@ TEST(ElasticaPush, FrictionlessForceIsNormalAndOnTheCylinder) {
     const ElasticaState state = push(problem, 2e-3);
     ASSERT_TRUE(state.report.usable());
     const ElasticaPoint& at = state.shape[static_cast<std::size_t>(problem.pieces_per_side)];
-    const double along = state.force_along_chord * std::cos(at.angle) + sigma * state.force * std::sin(at.angle);
+    const double along =
+        state.force_along_chord * std::cos(at.angle) + sigma * state.force * std::sin(at.angle);
     EXPECT_NEAR(along, 0.0, kForceError * state.force);
-    EXPECT_NEAR(std::hypot(at.x - problem.position, at.y - state.pusher_height), problem.radius, kLengthRounding);
+    EXPECT_NEAR(std::hypot(at.x - problem.position, at.y - state.pusher_height), problem.radius,
+                kLengthRounding);
     EXPECT_GT(state.force, 0.0);
     EXPECT_NEAR(state.travel, 2e-3, 1e-15);
   }
@@ -285,10 +291,11 @@ TEST(ElasticaPush, WrappedContact) {
   const double strain = first.tension / problem.wire.axial_stiffness;
   EXPECT_NEAR(first.tension, last.tension, kForceError * first.tension);
   EXPECT_NEAR(first.moment, -problem.wire.bending_stiffness * (1.0 + strain) / problem.radius, 1e-12);
-  EXPECT_NEAR((1.0 + strain) * (state.contact_end - state.contact_begin), problem.radius * (first.angle - last.angle),
-              kLengthRounding);
+  EXPECT_NEAR((1.0 + strain) * (state.contact_end - state.contact_begin),
+              problem.radius * (first.angle - last.angle), kLengthRounding);
   for (const ElasticaPoint* p : {&first, &last}) {
-    EXPECT_NEAR(std::hypot(p->x - problem.position, p->y - state.pusher_height), problem.radius, kLengthRounding);
+    EXPECT_NEAR(std::hypot(p->x - problem.position, p->y - state.pusher_height), problem.radius,
+                kLengthRounding);
   }
   EXPECT_NEAR(state.force + state.reaction_left_y + state.reaction_right_y, 0.0, kForceError * state.force);
   // Arc: pressure N/R on the cylinder and a point force at either lift-off point, all pushing the wire away:
@@ -369,8 +376,10 @@ TEST(ElasticaPush, TautWireHasTheBeamStringsStiffness) {
     problem.wire.length = problem.span / (1.0 + tension / problem.wire.axial_stiffness);
     const ElasticaState state = push(problem, 1e-7);
     ASSERT_TRUE(state.report.usable());
-    EXPECT_NEAR(state.tension_left, tension, 1e-4);  // EA 1e-16/strain of rounding and the travel's 1e-7 N, with margin
-    const double wanted = tensioned_clamped_stiffness(problem.wire.bending_stiffness, tension, 0.175, position);
+    EXPECT_NEAR(state.tension_left, tension,
+                1e-4);  // EA 1e-16/strain of rounding and the travel's 1e-7 N, with margin
+    const double wanted =
+        tensioned_clamped_stiffness(problem.wire.bending_stiffness, tension, 0.175, position);
     // Strain 1.5e-4 changes length and curvature; travel (1e-7 m) adds EA d^2/l^2 ~ 1e-7 N of tension.
     EXPECT_NEAR(state.force / 1e-7 / wanted, 1.0, 5e-4);
   }

@@ -22,7 +22,8 @@ TEST(Elastica, SmallSlackTendsToTheBucklingLoad) {
   const double slack = 1e-6;
   const BuckledElastica clamped = clamped_elastica(1.0, 1.0, 1.0 - slack);
   EXPECT_NEAR(clamped.compression / (4.0 * pi * pi) - 1.0, 0.5 * slack, 1e-9);  // rounding 1e-16/slack
-  EXPECT_NEAR(clamped.height / (2.0 / pi * std::sqrt(slack)), 1.0, 1e-5);  // of first order in the slack, times ten
+  EXPECT_NEAR(clamped.height / (2.0 / pi * std::sqrt(slack)), 1.0,
+              1e-5);  // of first order in the slack, times ten
   const BuckledElastica pinned = pinned_elastica(1.0, 1.0, 1.0 - slack);
   EXPECT_NEAR(4.0 * pinned.compression / clamped.compression, 1.0, 1e-14);
   EXPECT_EQ(pinned.height, clamped.height);  // half the wave number over twice the waves

@@ -21,8 +21,8 @@ TEST(HelicalBuckling, StandardCase) {
   const HelicalBuckling rod = standard_case();
   EXPECT_NEAR(rod.moment_scaled / 98.541496171190744, 1.0, 1e-13);
   EXPECT_NEAR(rod.tension_scaled / 2.900993205792131e3, 1.0, 1e-13);
-  EXPECT_NEAR(rod.largest_angle, std::acos(rod.moment_scaled * rod.moment_scaled / (2.0 * rod.tension_scaled) - 1.0),
-              1e-13);
+  EXPECT_NEAR(rod.largest_angle,
+              std::acos(rod.moment_scaled * rod.moment_scaled / (2.0 * rod.tension_scaled) - 1.0), 1e-13);
 }
 
 TEST(HelicalBuckling, SatisfiesItsTwoConditions) {
@@ -58,7 +58,8 @@ TEST(CriticalTorque, ClampedWithoutTension) {
   EXPECT_NEAR(critical_torque_clamped(1.0, 0.0, 1.0), 8.986818915818, 1e-11);
   EXPECT_NEAR(critical_torque_clamped(3.0, 0.0, 2.0), 1.5 * 8.986818915818, 1e-11);
   // Continuous through zero tension, slope about 0.147.
-  EXPECT_NEAR(critical_torque_clamped(1.0, 1e-3, 1.0) - critical_torque_clamped(1.0, -1e-3, 1.0), 2.95e-4, 1e-5);
+  EXPECT_NEAR(critical_torque_clamped(1.0, 1e-3, 1.0) - critical_torque_clamped(1.0, -1e-3, 1.0), 2.95e-4,
+              1e-5);
 }
 
 TEST(CriticalTorque, ClampedVanishesAtTheColumnsLoad) {
@@ -110,7 +111,8 @@ TEST(LateralBuckling, NarrowBeams) {
   // J_{-nu}(x) = J_nu cos(nu pi) - Y_nu sin(nu pi).
   const double x = 0.5 * lateral_buckling_load(1.0, 1.0, 1.0);
   const double nu = 0.25;
-  EXPECT_NEAR(std::cyl_bessel_j(nu, x) * std::cos(nu * pi) - std::cyl_neumann(nu, x) * std::sin(nu * pi), 0.0, 1e-12);
+  EXPECT_NEAR(std::cyl_bessel_j(nu, x) * std::cos(nu * pi) - std::cyl_neumann(nu, x) * std::sin(nu * pi), 0.0,
+              1e-12);
 }
 
 }  // namespace

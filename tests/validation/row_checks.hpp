@@ -12,8 +12,8 @@ namespace snare::validation {
 inline void expect_within(const std::vector<Row>& rows) {
   EXPECT_FALSE(rows.empty());
   for (const Row& row : rows) {
-    EXPECT_TRUE(row.within()) << row.group << ", " << row.name << ": " << row.value << " instead of " << row.reference
-                              << ", error " << row.error() << " of " << row.limit.value();
+    EXPECT_TRUE(row.within()) << row.group << ", " << row.name << ": " << row.value << " instead of "
+                              << row.reference << ", error " << row.error() << " of " << row.limit.value();
     EXPECT_NE(row.limit.error_kind() == ErrorKind::absolute, row.limit.reason().empty())
         << row.group << ", " << row.name << ": an absolute limit has a reason, and it alone";
   }

@@ -36,7 +36,8 @@ TEST(ShallowElastica, OutwardTable) {
   for (const Row& row : kTable) {
     const ShallowState state = shallow_state(row.compression, row.position);
     EXPECT_NEAR(state.force, row.force, row.force_digit) << row.compression << " " << row.position;
-    EXPECT_NEAR(state.deflection, row.deflection, row.deflection_digit) << row.compression << " " << row.position;
+    EXPECT_NEAR(state.deflection, row.deflection, row.deflection_digit)
+        << row.compression << " " << row.position;
   }
   // 192 EI/l^3 times the deflection sqrt(5/12) at mid-span; taut: sqrt(2 s (1 - s)), printed to six digits at 0.4.
   EXPECT_NEAR(shallow_state(0.0, 0.5).force, 192.0 * std::sqrt(5.0 / 12.0), 1e-11);
@@ -165,7 +166,8 @@ TEST(ShallowElastica, LargestInwardForceIsAMaximum) {
     // Forces against the bulge are negative: the largest is the least.
     EXPECT_LT(best.force, shallow_state(best.compression + 0.1, s).force);
     EXPECT_LT(best.force, shallow_state(best.compression - 0.1, s).force);
-    EXPECT_NEAR(best.force, shallow_largest_inward(1.0 - s).force, 1e-9);  // mirror image: forces of 100 to rounding
+    EXPECT_NEAR(best.force, shallow_largest_inward(1.0 - s).force,
+                1e-9);  // mirror image: forces of 100 to rounding
   }
 }
 

@@ -60,9 +60,10 @@ TEST(Kinds, HaveNamesOfTheirOwn) {
 TEST(Kinds, AreCountedLargestFirst) {
   const Limit limit = Limit::relative(0.1);
   EXPECT_EQ(count_by_kind({}), "");
-  EXPECT_EQ(count_by_kind({row(Kind::closed_form, 1.0, 1.0, limit), row(Kind::convergence, 1.0, 1.0, limit),
-                           row(Kind::independent_code, 1.0, 1.0, limit), row(Kind::convergence, 1.0, 1.0, limit)}),
-            "2 convergence of this code, 1 closed form, 1 independent code");
+  EXPECT_EQ(
+      count_by_kind({row(Kind::closed_form, 1.0, 1.0, limit), row(Kind::convergence, 1.0, 1.0, limit),
+                     row(Kind::independent_code, 1.0, 1.0, limit), row(Kind::convergence, 1.0, 1.0, limit)}),
+      "2 convergence of this code, 1 closed form, 1 independent code");
 }
 
 class SlowStaticChecks : public testing::TestWithParam<std::size_t> {};
@@ -71,7 +72,8 @@ TEST_P(SlowStaticChecks, AllRowsAreWithinTheirLimits) {
   expect_within(static_wire_checks()[GetParam()].run());
 }
 
-INSTANTIATE_TEST_SUITE_P(SlowStatic, SlowStaticChecks, testing::Range(std::size_t{0}, static_wire_checks().size()));
+INSTANTIATE_TEST_SUITE_P(SlowStatic, SlowStaticChecks,
+                         testing::Range(std::size_t{0}, static_wire_checks().size()));
 
 }  // namespace
 }  // namespace snare::validation

@@ -31,7 +31,8 @@ Vector2d planar_tip(int half_edges) {
   p.bending_stiffness = 1.0;
   p.axial_stiffness = kAxialStiffness;
   p.right.kind = PlanarEnd::Kind::free;
-  const test::TipLoadedRod<PlanarRod> rod(PlanarRod(MaterialMesh(half_edges, half_edges, 0.0), p), {0.0, kForce});
+  const test::TipLoadedRod<PlanarRod> rod(PlanarRod(MaterialMesh(half_edges, half_edges, 0.0), p),
+                                          {0.0, kForce});
   PlanarState state;
   state.controls = kUnit;
   state.q = Eigen::VectorXd::Zero(rod.rod().unknowns());
@@ -44,7 +45,8 @@ Vector2d planar_tip(int half_edges) {
 
 // The same in a plane turned out of the coordinate planes, with a twist of the clamp that must not matter.
 Vector2d spatial_tip(int half_edges, double clamp_angle) {
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.9, Vector3d(1.0, -2.0, 0.7).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.9, Vector3d(1.0, -2.0, 0.7).normalized()).toRotationMatrix();
   SpatialRodProperties p;
   p.bending_stiffness = 1.0;
   p.second_bending_stiffness = 1.0;
@@ -117,7 +119,8 @@ TEST(Cantilever, NaturalCurvatureMakesACircle) {
   double angle = 2.0 * std::atan(0.25 * 4.7 / n);  // of the half cell
   for (int e = 0; e < n; ++e, angle += step) {
     x += Vector3d(std::cos(angle), std::sin(angle), 0.0) / n;
-    EXPECT_LT((vertex(state, e + 1) - x).norm(), 1e-7) << e;  // residual 1e-10 (EI/L^2 + tension) over stiffness
+    EXPECT_LT((vertex(state, e + 1) - x).norm(), 1e-7)
+        << e;  // residual 1e-10 (EI/L^2 + tension) over stiffness
   }
 }
 

@@ -39,11 +39,14 @@ TEST(EdgeBeam, FlexibilitiesHaveTheirDerivatives) {
     for (const auto which : {&Flexibilities::alike, &Flexibilities::against}) {
       const auto f = [which](double at) { return flexibilities(at).*which; };
       const auto value = [&](const VectorXd& x) { return f(z + x[0]).value; };
-      const auto first = [&](const VectorXd& x) { return VectorXd(VectorXd::Constant(1, f(z + x[0]).first)); };
+      const auto first = [&](const VectorXd& x) {
+        return VectorXd(VectorXd::Constant(1, f(z + x[0]).first));
+      };
       const VectorXd origin = VectorXd::Zero(1);
       // Of values up to 0.5 with slopes down to 1e-4.
       EXPECT_LT(test::compare_gradient(value, origin, VectorXd::Constant(1, f(z).first)).relative, 1e-8) << z;
-      EXPECT_LT(test::compare_jacobian(first, origin, VectorXd::Constant(1, f(z).second)).relative, 1e-7) << z;
+      EXPECT_LT(test::compare_jacobian(first, origin, VectorXd::Constant(1, f(z).second)).relative, 1e-7)
+          << z;
     }
   }
 }
@@ -86,7 +89,8 @@ struct Disturbed {
       positions.col(i) << part.coordinate(i), 0.02 * unit(random), out_of_plane * 0.02 * unit(random);
     part.place(positions, {}, y);
     for (int i = 0; i < 7; ++i) {
-      for (int k = 0; k < 3; ++k) y[part.velocity_of(i) + k] = (k == 2 ? out_of_plane : 1.0) * 0.1 * unit(random);
+      for (int k = 0; k < 3; ++k)
+        y[part.velocity_of(i) + k] = (k == 2 ? out_of_plane : 1.0) * 0.1 * unit(random);
       y[part.angle_of(i)] += out_of_plane * 0.1 * unit(random);
       rate[part.angle_of(i)] += out_of_plane * 0.1 * unit(random);
       y.segment<2>(part.model().curvature_of(i)) += 0.1 * Vector2d(unit(random), out_of_plane * unit(random));
@@ -105,7 +109,8 @@ TEST(CurvedRod, SecondDerivativesMatchDifferences) {
       unknown.push_back(d.part.position_of(i) + k);
       balance.push_back(d.part.velocity_of(i) + k);
     }
-    for (const int u : {d.part.angle_of(i), d.part.model().curvature_of(i), d.part.model().curvature_of(i) + 1}) {
+    for (const int u :
+         {d.part.angle_of(i), d.part.model().curvature_of(i), d.part.model().curvature_of(i) + 1}) {
       if (i == 6 && u == d.part.angle_of(i)) continue;
       unknown.push_back(u);
       balance.push_back(u);
@@ -129,7 +134,8 @@ TEST(CurvedRod, SecondDerivativesMatchDifferences) {
     for (int a = 0; a < size; ++a) g[a] = rows[balance[base::at(a)]];
     return g;
   };
-  const test::DerivativeError error = test::compare_symmetric_part(gradient, VectorXd::Zero(size), analytic, 1e-2);
+  const test::DerivativeError error =
+      test::compare_symmetric_part(gradient, VectorXd::Zero(size), analytic, 1e-2);
   EXPECT_LT(error.relative, 1e-9) << error.worst;
 }
 

@@ -39,7 +39,8 @@ TEST(Frames, ParallelTransportIsTheSmallestRotation) {
     const Vector3d v = any_normal(from);
     const Vector3d expected = Eigen::Quaterniond::FromTwoVectors(from, to) * v;
     // 1 + from.to may be small: its reciprocal magnifies the round-off.
-    EXPECT_LT((parallel_transport<double>(v, from, to) - expected).norm(), 10.0 * kRoundOff / (1.0 + from.dot(to)));
+    EXPECT_LT((parallel_transport<double>(v, from, to) - expected).norm(),
+              10.0 * kRoundOff / (1.0 + from.dot(to)));
   }
   const Vector3d t = random_unit(random);
   EXPECT_LT((parallel_transport<double>(any_normal(t), t, t) - any_normal(t)).norm(), kRoundOff);
@@ -61,7 +62,8 @@ TEST(Frames, TransportDoesNotTurnAboutTheTangent) {
 TEST(Frames, StayOrthonormalOverManySteps) {
   std::mt19937 random(4);
   Frame frame{Vector3d::UnitX(), Vector3d::UnitY()};
-  for (int k = 0; k < 10000; ++k) frame = transport(frame, (frame.tangent + 0.3 * random_unit(random)).normalized());
+  for (int k = 0; k < 10000; ++k)
+    frame = transport(frame, (frame.tangent + 0.3 * random_unit(random)).normalized());
   EXPECT_NEAR(frame.director.norm(), 1.0, kRoundOff);
   EXPECT_NEAR(frame.director.dot(frame.tangent), 0.0, kRoundOff);
 }

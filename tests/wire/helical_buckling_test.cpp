@@ -132,7 +132,8 @@ double envelope_error(const Localised& result, const validation::HelicalBuckling
 
 TEST(SlowHelicalBuckling, LocalisedHelix) {
   const auto solve = [](double axial_stiffness) {
-    return std::array{localise(axial_stiffness, 100), localise(axial_stiffness, 200), localise(axial_stiffness, 400)};
+    return std::array{localise(axial_stiffness, 100), localise(axial_stiffness, 200),
+                      localise(axial_stiffness, 400)};
   };
   const std::array<Localised, 3> soft = solve(5e7);
   const std::array<Localised, 3> stiff = solve(1e8);

@@ -58,7 +58,8 @@ SpatialRodProperties round_rod() {
   return p;
 }
 
-double spatial_critical(SpatialEnd::Kind left, SpatialEnd::Kind right, double second_stiffness, int half_edges) {
+double spatial_critical(SpatialEnd::Kind left, SpatialEnd::Kind right, double second_stiffness,
+                        int half_edges) {
   return test::critical_load(1.0, 100.0, [&](double compression) {
     SpatialRodProperties p = round_rod();
     p.second_bending_stiffness = second_stiffness;
@@ -85,7 +86,8 @@ TEST(Buckling, PlanarColumn) {
     return std::array{planar_critical(left, right, 20), planar_critical(left, right, 40),
                       planar_critical(left, right, 80)};
   };
-  expect_load(loads(Kind::clamp, Kind::clamp), validation::buckling_load(ColumnEnds::clamped_clamped, 1.0, 1.0));
+  expect_load(loads(Kind::clamp, Kind::clamp),
+              validation::buckling_load(ColumnEnds::clamped_clamped, 1.0, 1.0));
   expect_load(loads(Kind::clamp, Kind::pin), validation::buckling_load(ColumnEnds::clamped_pinned, 1.0, 1.0));
   expect_load(loads(Kind::pin, Kind::pin), validation::buckling_load(ColumnEnds::pinned_pinned, 1.0, 1.0));
 }
@@ -97,9 +99,11 @@ TEST(Buckling, SpatialColumn) {
     return std::array{spatial_critical(left, right, second, 20), spatial_critical(left, right, second, 40),
                       spatial_critical(left, right, second, 80)};
   };
-  expect_load(loads(Kind::clamp, Kind::clamp, 1.0), validation::buckling_load(ColumnEnds::clamped_clamped, 1.0, 1.0));
+  expect_load(loads(Kind::clamp, Kind::clamp, 1.0),
+              validation::buckling_load(ColumnEnds::clamped_clamped, 1.0, 1.0));
   // About its weak axis.
-  expect_load(loads(Kind::clamp, Kind::pin, 0.4), validation::buckling_load(ColumnEnds::clamped_pinned, 0.4, 1.0));
+  expect_load(loads(Kind::clamp, Kind::pin, 0.4),
+              validation::buckling_load(ColumnEnds::clamped_pinned, 0.4, 1.0));
 }
 
 TEST(Buckling, PinsLikeTheirPlanarCounterpart) {
@@ -131,8 +135,8 @@ double critical_torque(double tension, int half_edges) {
 TEST(TwistInstability, ClampedRodUnderAnyTension) {
   for (const double tension : {-15.0, 0.0, 40.0}) {
     SCOPED_TRACE(tension);
-    const test::Extrapolation result =
-        test::extrapolate({critical_torque(tension, 20), critical_torque(tension, 40), critical_torque(tension, 80)});
+    const test::Extrapolation result = test::extrapolate(
+        {critical_torque(tension, 20), critical_torque(tension, 40), critical_torque(tension, 80)});
     const double expected = validation::critical_torque_clamped(1.0, tension, 1.0);
     EXPECT_NEAR(result.order, 2.0, kOrderTolerance);
     // Fourth-order rest 1e-6 as above, and the stretch |T|/EA (no more than 2e-3) with its influence on the

@@ -27,8 +27,8 @@ TEST(MaterialMesh, CarriesItsControls) {
 TEST(MaterialMesh, RestLengthsAreTheGapsOfTheCoordinates) {
   const MaterialMesh mesh(6, 10, 2.0);
   for (int e = 0; e < mesh.edges(); ++e) {
-    EXPECT_NEAR(mesh.rest_length(e, kControls), mesh.coordinate(e + 1, kControls) - mesh.coordinate(e, kControls),
-                kRoundOff);
+    EXPECT_NEAR(mesh.rest_length(e, kControls),
+                mesh.coordinate(e + 1, kControls) - mesh.coordinate(e, kControls), kRoundOff);
     EXPECT_GT(mesh.rest_length(e, kControls), 0.0);
   }
 }
@@ -56,7 +56,8 @@ TEST(MaterialMesh, GradingDrawsVerticesTowardsMountsAndContact) {
   for (const int side : {0, 8}) {
     for (int e = 0; e < 4; ++e) {
       // Symmetric about the middle of the side, growing towards it.
-      EXPECT_NEAR(mesh.rest_length(side + e, kControls), mesh.rest_length(side + 7 - e, kControls), kRoundOff);
+      EXPECT_NEAR(mesh.rest_length(side + e, kControls), mesh.rest_length(side + 7 - e, kControls),
+                  kRoundOff);
     }
     for (int e = 1; e < 4; ++e) {
       EXPECT_GT(mesh.rest_length(side + e, kControls), mesh.rest_length(side + e - 1, kControls));

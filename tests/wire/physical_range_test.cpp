@@ -41,7 +41,8 @@ TEST(PhysicalRange, OnlyWhatNoWireHasIsDoubted) {
   EXPECT_TRUE(doubts(wire).empty());
   wire.axial_stiffness_override = 4.6 * 207e9 * std::numbers::pi * 0.64e-6 / 4.0;
   ASSERT_EQ(doubts(wire).size(), 1u);
-  EXPECT_NE(doubts(wire)[0].find("the axial stiffness is 4.6 times that of a solid wire of 0.8 mm"), std::string::npos);
+  EXPECT_NE(doubts(wire)[0].find("the axial stiffness is 4.6 times that of a solid wire of 0.8 mm"),
+            std::string::npos);
   wire.youngs_modulus = 1e13;
   wire.density = 1e5;
   EXPECT_EQ(doubts(wire).size(), 3u);

@@ -55,7 +55,8 @@ struct Moved {
     Matrix3Xd positions(3, part.vertices());
     for (int i = 0; i < part.vertices(); ++i) {
       const double step = amount / rod.elements;
-      positions.col(i) << part.coordinate(i) + 0.5 * step * unit(random), step * unit(random), step * unit(random);
+      positions.col(i) << part.coordinate(i) + 0.5 * step * unit(random), step * unit(random),
+          step * unit(random);
     }
     part.place(positions, {}, y);
     for (int i = 0; i < part.vertices(); ++i) {
@@ -271,7 +272,8 @@ TEST(RodForces, AreNoneOfAStraightWireWhereverItPoints) {
           VectorXd rows(y.size());
           system.residual(at, rows);
           EXPECT_LT(rows.cwiseAbs().maxCoeff(), 1e-13) << elements << " along " << along.transpose();
-          for (const double v : system.jacobian(at, 1.0).value) ASSERT_TRUE(std::isfinite(v)) << along.transpose();
+          for (const double v : system.jacobian(at, 1.0).value)
+            ASSERT_TRUE(std::isfinite(v)) << along.transpose();
         }
       }
     }

@@ -147,13 +147,12 @@ TEST_P(RodInPlane, FeelsNothingAcrossIt) {
   for (const int other : {(l.normal + 1) % 3, (l.normal + 2) % 3}) EXPECT_FALSE(part.plane_across(other));
 }
 
-INSTANTIATE_TEST_SUITE_P(Planes, RodInPlane,
-                         testing::Values(Lying{Formulation::vertices, 2, false}, Lying{Formulation::vertices, 0, true},
-                                         Lying{Formulation::vertices, 1, false, 0.5},
-                                         Lying{Formulation::vertices, 1, true, 0.5},
-                                         Lying{Formulation::higher_order, 2, true},
-                                         Lying{Formulation::higher_order, 1, false},
-                                         Lying{Formulation::higher_order, 0, false, 0.5}));
+INSTANTIATE_TEST_SUITE_P(
+    Planes, RodInPlane,
+    testing::Values(Lying{Formulation::vertices, 2, false}, Lying{Formulation::vertices, 0, true},
+                    Lying{Formulation::vertices, 1, false, 0.5}, Lying{Formulation::vertices, 1, true, 0.5},
+                    Lying{Formulation::higher_order, 2, true}, Lying{Formulation::higher_order, 1, false},
+                    Lying{Formulation::higher_order, 0, false, 0.5}));
 
 // Mounts, weight, nature and places that are not their own mirror images.
 TEST(RodPlane, IsNoneWhereAnythingLeavesIt) {
@@ -176,9 +175,11 @@ TEST(RodPlane, IsNoneWhereAnythingLeavesIt) {
   EXPECT_FALSE(stays([](RodInMotion& r) { r.properties.natural_curvature[1] = 0.1; }));
   EXPECT_FALSE(stays([](RodInMotion& r) { r.properties.natural_twist = 0.1; }));
   EXPECT_FALSE(stays([](RodInMotion& r) { r.properties.left.position.z() = 1e-9; }));
-  EXPECT_FALSE(stays([](RodInMotion& r) { r.properties.right.direction = Vector3d(0.0, 1.0, 0.01).normalized(); }));
+  EXPECT_FALSE(
+      stays([](RodInMotion& r) { r.properties.right.direction = Vector3d(0.0, 1.0, 0.01).normalized(); }));
   EXPECT_FALSE(stays([](RodInMotion& r) { r.properties.right.twist_angle = 0.1; }));
-  EXPECT_FALSE(stays([](RodInMotion& r) { r.properties.right.director = Vector3d(0.0, 1.0, 1.0).normalized(); }));
+  EXPECT_FALSE(
+      stays([](RodInMotion& r) { r.properties.right.director = Vector3d(0.0, 1.0, 1.0).normalized(); }));
   EXPECT_TRUE(stays([](RodInMotion& r) { r.properties.right.kind = SpatialEnd::Kind::pin; }));
 }
 

@@ -46,11 +46,12 @@ TEST(SectionLaw, YieldingSectionFollowsTheRoundBar) {
   const double ei = 2.0, diameter = 1.5e-3, yield = 3e-3, hardening = 1e-6;
   const std::vector<SliderElement> fibres = yielding_section(ei, diameter, yield, hardening);
   const double first = 2.0 * yield / diameter;
-  EXPECT_NEAR(respond(hardening * ei, fibres, 0.9 * first, nullptr).resultant, 0.9 * first * ei, 1e-9 * first * ei);
+  EXPECT_NEAR(respond(hardening * ei, fibres, 0.9 * first, nullptr).resultant, 0.9 * first * ei,
+              1e-9 * first * ei);
   for (const double ratio : {1.2, 1.5, 2.0, 4.0, 20.0}) {
     const double eta = 1.0 / ratio;
-    const double exact =
-        2.0 / std::numbers::pi * ((5.0 - 2.0 * eta * eta) * std::sqrt(1.0 - eta * eta) / 3.0 + std::asin(eta) / eta);
+    const double exact = 2.0 / std::numbers::pi *
+                         ((5.0 - 2.0 * eta * eta) * std::sqrt(1.0 - eta * eta) / 3.0 + std::asin(eta) / eta);
     // Eight pairs of fibres.
     EXPECT_NEAR(respond(hardening * ei, fibres, ratio * first, nullptr).resultant, exact * first * ei,
                 1.5e-2 * first * ei)

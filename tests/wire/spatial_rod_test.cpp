@@ -19,8 +19,8 @@ using std::numbers::pi;
 
 constexpr Controls kControls{0.0, 0.45, 1.05};
 
-constexpr SpatialEnd::Kind kKinds[] = {SpatialEnd::Kind::clamp, SpatialEnd::Kind::twisting_pin, SpatialEnd::Kind::pin,
-                                       SpatialEnd::Kind::free};
+constexpr SpatialEnd::Kind kKinds[] = {SpatialEnd::Kind::clamp, SpatialEnd::Kind::twisting_pin,
+                                       SpatialEnd::Kind::pin, SpatialEnd::Kind::free};
 
 TEST(SpatialRod, DerivativesOfARoundRodMatchDifferences) {
   std::mt19937 random(1);
@@ -60,8 +60,8 @@ TEST(SpatialRod, HessianIsTheSecondDerivativeOfTheEnergy) {
   Eigen::MatrixXd second(rod.unknowns(), rod.unknowns());
   for (int i = 0; i < rod.unknowns(); ++i) {
     for (int j = 0; j < rod.unknowns(); ++j) {
-      second(i, j) =
-          (energy(i, h, j, h) - energy(i, h, j, -h) - energy(i, -h, j, h) + energy(i, -h, j, -h)) / (4.0 * h * h);
+      second(i, j) = (energy(i, h, j, h) - energy(i, h, j, -h) - energy(i, -h, j, h) + energy(i, -h, j, -h)) /
+                     (4.0 * h * h);
     }
   }
   // Second order: truncation h^2 / (edge 0.25)^2 about 1e-6 of the largest entry, round-off 1e-15/h^2 = 1e-8.
@@ -128,7 +128,8 @@ TEST(SpatialRod, EnergyIsInvariantAndGradientTurnsWithTheRod) {
     const RodAssembly at = test::assembled(rod, state);
 
     // Mounts and rod turn together.
-    const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Vector3d(0.3, -0.8, 0.5).normalized()).toRotationMatrix();
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(1.1, Vector3d(0.3, -0.8, 0.5).normalized()).toRotationMatrix();
     SpatialEnd left = p.left;
     SpatialEnd right = p.right;
     for (SpatialEnd* end : {&left, &right}) {
@@ -147,7 +148,8 @@ TEST(SpatialRod, EnergyIsInvariantAndGradientTurnsWithTheRod) {
     }
     // Coordinates of order one lose eps on edges of 0.1: 1e-15 relative, times the stiffness ratio 1e2 to 1e3.
     EXPECT_NEAR(there.energy, at.energy, 1e-12 * at.energy);
-    EXPECT_LT((there.gradient - expected).lpNorm<Eigen::Infinity>(), 1e-11 * expected.lpNorm<Eigen::Infinity>());
+    EXPECT_LT((there.gradient - expected).lpNorm<Eigen::Infinity>(),
+              1e-11 * expected.lpNorm<Eigen::Infinity>());
   }
 }
 
@@ -228,7 +230,8 @@ TEST(SpatialRod, ManyTurnsOfAMountAreCounted) {
   }
   accept(state, q);
   const Eigen::VectorXd torque = rod.torques(state);
-  for (int i = 0; i <= 12; ++i) EXPECT_NEAR(torque[i], 0.5 * 2.0 * pi * turns, 1e-11);  // eps of 130 rad / 0.02
+  for (int i = 0; i <= 12; ++i)
+    EXPECT_NEAR(torque[i], 0.5 * 2.0 * pi * turns, 1e-11);  // eps of 130 rad / 0.02
 
   // The director instead: the reference twist at the mount follows.
   for (int step = 1; step <= 70; ++step) {
@@ -324,7 +327,8 @@ TEST(SpatialRod, NaturalHelixKeepsAnEnergyOfSecondOrder) {
       Frame wanted{state.frames[static_cast<std::size_t>(e)].tangent, normal};
       wanted.director -= wanted.tangent.dot(normal) * wanted.tangent;
       wanted.director.normalize();
-      q[4 * e + 3] = reference_twist(state.frames[static_cast<std::size_t>(e)], wanted, e == 0 ? 0.0 : q[4 * e - 1]);
+      q[4 * e + 3] =
+          reference_twist(state.frames[static_cast<std::size_t>(e)], wanted, e == 0 ? 0.0 : q[4 * e - 1]);
     }
     accept(state, q);
     return rod.energy(state);

@@ -26,7 +26,8 @@ CellVector to_cell(const PairGradient& g) {
 }
 
 CellMatrix to_cell(const PairHessian& h) {
-  constexpr int x = Rows::before, y = Rows::middle, z = Rows::after, p = Rows::angle_before, q = Rows::angle_after;
+  constexpr int x = Rows::before, y = Rows::middle, z = Rows::after, p = Rows::angle_before,
+                q = Rows::angle_after;
   CellMatrix m;
   const auto set = [&m](int row, int column, const Matrix3d& value) {
     m.block<3, 3>(row, column) = value;
@@ -52,7 +53,8 @@ CellMatrix to_cell(const PairHessian& h) {
   return m;
 }
 
-void add_to_bands(const RodModel& model, int i, const PairGradient& g, double factor, Eigen::VectorXd& gradient) {
+void add_to_bands(const RodModel& model, int i, const PairGradient& g, double factor,
+                  Eigen::VectorXd& gradient) {
   constexpr int block = RodModel::block;
   if (i > 0) {
     gradient.segment<3>(block * (i - 1)) -= factor * g.a;
@@ -70,7 +72,8 @@ bool BendingCell::exists(const RodModel& model, int i) {
   return !end || model.properties().end(*end).kind == SpatialEnd::Kind::clamp;
 }
 
-BendingCell::BendingCell(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at, int i)
+BendingCell::BendingCell(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at,
+                         int i)
     : end_(model.end_of(i)) {
   const SpatialState& state = instant.state;
   const int n = model.edges();

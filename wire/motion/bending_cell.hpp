@@ -64,6 +64,7 @@ struct BendingCell {
 };
 
 /// Adds factor times derivatives by the edges beside vertex i and their angles to those by bands.
-void add_to_bands(const RodModel& model, int i, const PairGradient& g, double factor, Eigen::VectorXd& gradient);
+void add_to_bands(const RodModel& model, int i, const PairGradient& g, double factor,
+                  Eigen::VectorXd& gradient);
 
 }  // namespace snare::wire

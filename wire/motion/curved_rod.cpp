@@ -23,15 +23,17 @@ double flexibility_at(const RodModel& model, int i) {
   return end ? 1.0 / model.properties().end(*end).rotational_stiffness : 0.0;
 }
 
-EdgeBeam beam_of(const RodModel& model, const RodInstant& instant, const Vector2d& near, const Vector2d& far, int e) {
+EdgeBeam beam_of(const RodModel& model, const RodInstant& instant, const Vector2d& near, const Vector2d& far,
+                 int e) {
   const double chord = (vertex(instant.state, e + 1) - vertex(instant.state, e)).norm();
-  return edge_beam({model.rest_length(e), model.properties().axial_stiffness, stiffness_of(model)}, chord, near, far);
+  return edge_beam({model.rest_length(e), model.properties().axial_stiffness, stiffness_of(model)}, chord,
+                   near, far);
 }
 
 }  // namespace
 
-void add_curved_vertex(const RodModel& model, const BendingCell& cell, int i, const DaePoint& at, RodAssembly& out,
-                       Matrix2Xd& by_curvature) {
+void add_curved_vertex(const RodModel& model, const BendingCell& cell, int i, const DaePoint& at,
+                       RodAssembly& out, Matrix2Xd& by_curvature) {
   const VertexTurning turning(cell);
   const Vector2d moment = curved_moments(model, at, i);
   const double flexibility = flexibility_at(model, i);
@@ -50,7 +52,8 @@ CurvedEnd curved_end(const RodModel& model, const RodInstant& instant, const Dae
   const Vector2d stiffness = stiffness_of(model);
   const Vector2d moment = curved_moments(model, at, i);
   const double flexibility = flexibility_at(model, i);
-  result.gradient << of_edge(turning.gradient(moment)), stiffness.cwiseProduct(turning.angles() - flexibility * moment);
+  result.gradient << of_edge(turning.gradient(moment)),
+      stiffness.cwiseProduct(turning.angles() - flexibility * moment);
   result.hessian.topLeftCorner<4, 4>() = of_edge(turning.hessian(moment));
   for (int j = 0; j < 2; ++j) {
     result.hessian.col(4 + j).head<4>() = of_edge(turning.gradient(stiffness[j] * Vector2d::Unit(j)));
@@ -108,7 +111,8 @@ Matrix2Xd balanced_curvatures(const RodModel& model, const RodInstant& instant, 
       const double flexibility = flexibility_at(model, i);
       const Vector2d moment = stiffness.cwiseProduct(k.col(i) - natural);
       rows.col(i) += stiffness.cwiseProduct(angles.col(i) - flexibility * moment);
-      for (int j = 0; j < 2; ++j) matrix.lower(2 * i + j, 2 * i + j) -= flexibility * stiffness[j] * stiffness[j];
+      for (int j = 0; j < 2; ++j)
+        matrix.lower(2 * i + j, 2 * i + j) -= flexibility * stiffness[j] * stiffness[j];
     }
     if (!factor.factorize(matrix)) break;
     Eigen::MatrixXd step = rows.reshaped();

@@ -29,8 +29,8 @@ struct CurvedEnd {
   Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 6> hessian = Eigen::Matrix<double, 6, 6>::Zero();
 };
-[[nodiscard]] CurvedEnd curved_end(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at,
-                                   End end);
+[[nodiscard]] CurvedEnd curved_end(const RodModel& model, const RodInstant& instant,
+                                   const numerics::DaePoint& at, End end);
 /// Moment of an end's bending by a rigid rotation of all that follows it [N m].                theory.md (W.29)
 [[nodiscard]] Eigen::Vector3d curved_end_moment(const RodModel& model, const RodInstant& instant,
                                                 const numerics::DaePoint& at, End end);

@@ -28,7 +28,8 @@ EdgeBeam edge_beam(const EdgeBeamConstants& p, double chord, const Vector2d& nea
     for (int k = 0; k < 2; ++k) {
       beam.hessian(of_near, EdgeBeam::near + k) = h.near[m][base::at(k)];
       beam.hessian(of_far, EdgeBeam::far + k) = h.far[m][base::at(k)];
-      beam.hessian(of_near, EdgeBeam::far + k) = beam.hessian(EdgeBeam::far + k, of_near) = h.next[m][base::at(k)];
+      beam.hessian(of_near, EdgeBeam::far + k) = beam.hessian(EdgeBeam::far + k, of_near) =
+          h.next[m][base::at(k)];
     }
   }
   return beam;

@@ -34,8 +34,8 @@ struct EdgeBeam {
   Eigen::Matrix<double, count, count> hessian;
 };
 /// chord: l [m], > 0; near, far: k_a, k_b [1/m].
-[[nodiscard]] EdgeBeam edge_beam(const EdgeBeamConstants& constants, double chord, const Eigen::Vector2d& near,
-                                 const Eigen::Vector2d& far);
+[[nodiscard]] EdgeBeam edge_beam(const EdgeBeamConstants& constants, double chord,
+                                 const Eigen::Vector2d& near, const Eigen::Vector2d& far);
 
 /// A flexibility of a beam under tension and its derivatives by z.
 template <class S>
@@ -67,8 +67,9 @@ struct BalancedBeam {
 };
 /// rest, chord: h, l [m]; near, far: k_a, k_b [1/m].
 template <class S>
-[[nodiscard]] BalancedBeam<S> balanced_beam(const S& rest, const S& chord, const Pair<S>& near, const Pair<S>& far,
-                                            double axial_stiffness, const Pair<double>& bending_stiffness);
+[[nodiscard]] BalancedBeam<S> balanced_beam(const S& rest, const S& chord, const Pair<S>& near,
+                                            const Pair<S>& far, double axial_stiffness,
+                                            const Pair<double>& bending_stiffness);
 
 /// Second derivatives of its energy by the chord and the curvatures at its ends; blocks of the latter by rows.
 template <class S>
@@ -92,7 +93,8 @@ inline constexpr double fraction = 2.0;  // below it a ratio of polynomials
 
 /// sum c_n x^n and its derivatives by x.
 template <class S, std::size_t terms>
-[[nodiscard, gnu::always_inline]] inline FlexibilityOf<S> polynomial(const std::array<double, terms>& c, const S& x) {
+[[nodiscard, gnu::always_inline]] inline FlexibilityOf<S> polynomial(const std::array<double, terms>& c,
+                                                                     const S& x) {
   FlexibilityOf<S> f{0.0, 0.0, 0.0};
   for (std::size_t n = terms; n-- > 0;) {
     f.second = f.second * x + 2.0 * f.first;
@@ -104,7 +106,8 @@ template <class S, std::size_t terms>
 
 /// f/g and its derivatives.
 template <class S>
-[[nodiscard, gnu::always_inline]] inline FlexibilityOf<S> ratio(const FlexibilityOf<S>& f, const FlexibilityOf<S>& g) {
+[[nodiscard, gnu::always_inline]] inline FlexibilityOf<S> ratio(const FlexibilityOf<S>& f,
+                                                                const FlexibilityOf<S>& g) {
   const S inverse = 1.0 / g.value;
   const S value = f.value * inverse;
   const S first = (f.first - value * g.first) * inverse;
@@ -162,7 +165,8 @@ template <class S>
 template <class S>
 [[nodiscard, gnu::always_inline]] inline FlexibilitiesOf<S> flexibilities_at(const S& z) {
   const S x = 0.25 * z;
-  if (numerics::none_below(x, beam::least) && numerics::all_below(x, beam::fraction)) return beam::of_small(x);
+  if (numerics::none_below(x, beam::least) && numerics::all_below(x, beam::fraction))
+    return beam::of_small(x);
   if (numerics::none_below(x, beam::fraction)) return beam::of_large(x);
   if constexpr (std::is_same_v<S, double>) {  // under too much compression
     FlexibilitiesOf<S> f = beam::of_small(beam::least);
@@ -189,8 +193,10 @@ template <class S>
 // rises with N and is concave but for the square of the strain, so that Newton's method converges.
 template <class S>
 [[nodiscard, gnu::always_inline]] inline BalancedBeam<S> balanced_beam(const S& rest, const S& chord,
-                                                                       const Pair<S>& near, const Pair<S>& far,
-                                                                       double axial_stiffness, const Pair<double>& ei) {
+                                                                       const Pair<S>& near,
+                                                                       const Pair<S>& far,
+                                                                       double axial_stiffness,
+                                                                       const Pair<double>& ei) {
   const bool round = ei[0] == ei[1];
   const double flexibility = 1.0 / axial_stiffness;
   const Pair<S> sum{near[0] + far[0], near[1] + far[1]};
@@ -204,7 +210,8 @@ template <class S>
     return tension * (1.0 + flexibility * tension) * square;
   };
   BalancedBeam<S> b;
-  b.tension = (chord - rest + cube * ((s2[0] + s2[1]) / 96.0 + (d2[0] + d2[1]) / 1440.0)) / compliance;  // of C, D at 0
+  b.tension = (chord - rest + cube * ((s2[0] + s2[1]) / 96.0 + (d2[0] + d2[1]) / 1440.0)) /
+              compliance;  // of C, D at 0
   constexpr int most = 50;
   for (int k = 0; k < most; ++k) {
     const S before = load(b.tension);
@@ -248,8 +255,9 @@ template <class S>
 
 // N eliminated: H - H_N H_N^T/H_NN with H_NN = -softness, of which H has no part by the chord.
 template <class S>
-[[nodiscard, gnu::always_inline]] inline BeamStiffness<S> beam_stiffness(const BalancedBeam<S>& beam, const S& rest,
-                                                                         const Pair<S>& near, const Pair<S>& far,
+[[nodiscard, gnu::always_inline]] inline BeamStiffness<S> beam_stiffness(const BalancedBeam<S>& beam,
+                                                                         const S& rest, const Pair<S>& near,
+                                                                         const Pair<S>& far,
                                                                          const Pair<double>& ei) {
   const S inverse = 1.0 / beam.softness;
   const S factor = -0.5 * rest * rest * rest * beam.lever;

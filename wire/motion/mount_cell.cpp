@@ -68,7 +68,8 @@ EdgeForce edge_force(const RodModel& model, const RodInstant& instant, const Dae
     const Matrix4d hessian = end == End::left ? kappa.hessian.of_after() : kappa.hessian.of_before();
     const double factor = stiffness[base::at(j)];
     f.force.head<4>() += factor * slope.dot(rate) * slope;
-    f.by_place.topLeftCorner<4, 4>() += factor * (slope.dot(rate) * hessian + slope * (hessian * rate).transpose());
+    f.by_place.topLeftCorner<4, 4>() +=
+        factor * (slope.dot(rate) * hessian + slope * (hessian * rate).transpose());
     f.by_rate.topLeftCorner<4, 4>() += factor * slope * slope.transpose();
   }
   return f;

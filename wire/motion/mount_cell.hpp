@@ -29,8 +29,8 @@ struct MountCell {
 };
 
 /// At an end whose mount moves (instant.spin).
-[[nodiscard]] MountCell mount_cell(const RodModel& model, const RodInstant& instant, const numerics::DaePoint& at,
-                                   End end);
+[[nodiscard]] MountCell mount_cell(const RodModel& model, const RodInstant& instant,
+                                   const numerics::DaePoint& at, End end);
 /// Its moment alone [N m].
 [[nodiscard]] Eigen::Vector3d mount_moment(const RodModel& model, const RodInstant& instant,
                                            const numerics::DaePoint& at, End end);

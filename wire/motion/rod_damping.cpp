@@ -27,8 +27,8 @@ void add_bending_damping_jacobian(const RodModel& model, const BendingCell& cell
     const BendingCell::Derivatives kappa = cell.differentiate(static_cast<int>(j));
     products.rate[j] = to_cell(kappa.gradient);
     products.force[j] = stiffness[j] * products.rate[j];
-    products.place[j] = to_cell(
-        product<double>(kappa.hessian, a, b, cell.rate[CellRows::angle_before], cell.rate[CellRows::angle_after]));
+    products.place[j] = to_cell(product<double>(kappa.hessian, a, b, cell.rate[CellRows::angle_before],
+                                                cell.rate[CellRows::angle_after]));
     add_scaled(kappa.hessian, products.force[j].dot(cell.rate), turned);
   }
   products.m = to_cell(turned);

@@ -112,14 +112,15 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
     const Lanes chord = numerics::sqrt(d.squaredNorm());
     const Lanes inverse = 1.0 / chord;
     const Lanes3 t = inverse * d;
-    const Lanes3 carried = transported<Lanes>(rows_.at3(Row::old_director, e), rows_.at3(Row::old_tangent, e), t);
+    const Lanes3 carried =
+        transported<Lanes>(rows_.at3(Row::old_director, e), rows_.at3(Row::old_tangent, e), t);
     const Lanes3 m1 = turned<Lanes>(carried, t, rows_.at(Row::theta, e));
     const Lanes3 m2 = t.cross(m1);
     // Stretching (W.3) or the beam (W.32), and its damping tau EA e' with e' = t.(v_{i+1} - v_i)/h (M.4).
     Lanes tension;
     if (model.is_curved()) {
-      const BalancedBeam<Lanes> beam =
-          balanced_beam<Lanes>(rest, chord, curvatures_at(rows_, e), curvatures_at(rows_, e + 1), stiffness, bending);
+      const BalancedBeam<Lanes> beam = balanced_beam<Lanes>(rest, chord, curvatures_at(rows_, e),
+                                                            curvatures_at(rows_, e + 1), stiffness, bending);
       tension = beam.tension;
       energy += there * (beam.energy + bent * rest);
       for (const int j : {0, 1}) {
@@ -152,7 +153,9 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
     for (int r = first; r < first + 3; ++r) std::fill_n(rows_.row(r) + n, Lanes::count, rows_.row(r)[n - 1]);
   }
   for (int e = 0; e < n; ++e) {
-    const auto of_edge = [&](int r) { return Vector3d(rows_.row(r)[e], rows_.row(r + 1)[e], rows_.row(r + 2)[e]); };
+    const auto of_edge = [&](int r) {
+      return Vector3d(rows_.row(r)[e], rows_.row(r + 1)[e], rows_.row(r + 2)[e]);
+    };
     trial.state.frames[base::at(e)] = {of_edge(Row::tangent), of_edge(Row::director)};
     trial.directors[base::at(e)] = {of_edge(Row::first), of_edge(Row::second)};
     trial.inverse_lengths[base::at(e)] = rows_.row(Row::inverse_length)[e];
@@ -171,10 +174,10 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
   const double time = model.damping().bending_time;
   Lanes energy = 0.0, power = 0.0;
   for (int i = 1; i < n; i += Lanes::count) {
-    rows_.set(
-        Row::twist, i,
-        twist_between<Lanes>(rows_.at3(Row::tangent, i - 1), rows_.at3(Row::director, i - 1),
-                             rows_.at3(Row::tangent, i), rows_.at3(Row::director, i), rows_.at(Row::old_twist, i)));
+    rows_.set(Row::twist, i,
+              twist_between<Lanes>(rows_.at3(Row::tangent, i - 1), rows_.at3(Row::director, i - 1),
+                                   rows_.at3(Row::tangent, i), rows_.at3(Row::director, i),
+                                   rows_.at(Row::old_twist, i)));
     auto [there, l, before, after, cell] = InnerCells(terms, rows_, i);
     Pair<Lanes> weights = cell.by_kappa;
     if (model.is_curved()) {
@@ -196,9 +199,9 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
       const auto rate = [&](int k) __attribute__((always_inline)) {
         return rows_.at3(Row::velocity, k + 1) - rows_.at3(Row::velocity, k);
       };
-      const Pair<Lanes> rates =
-          curvature_rates<Lanes>(cell.turn, before, after, cell.inverse.a * rate(i - 1), cell.inverse.b * rate(i),
-                                 rows_.at(Row::theta_rate, i - 1), rows_.at(Row::theta_rate, i));
+      const Pair<Lanes> rates = curvature_rates<Lanes>(
+          cell.turn, before, after, cell.inverse.a * rate(i - 1), cell.inverse.b * rate(i),
+          rows_.at(Row::theta_rate, i - 1), rows_.at(Row::theta_rate, i));
       const Lanes by_length = time / l;
       for (std::size_t j = 0; j < 2; ++j) {
         const Lanes moment = by_length * stiffness[j] * rates[j];
@@ -207,7 +210,8 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
       }
       if (model.strands().act()) {
         for (int k = 0; k < Lanes::count && i + k < n; ++k) {
-          const Vector2d moment = strand_moment(model, i + k, l[k], {rates[0][k], rates[1][k]}, at, out.losses);
+          const Vector2d moment =
+              strand_moment(model, i + k, l[k], {rates[0][k], rates[1][k]}, at, out.losses);
           weights[0].v[k] += moment[0];
           weights[1].v[k] += moment[1];
         }
@@ -228,19 +232,20 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
   std::copy_n(rows_.row(Row::twist) + 1, n - 1, trial.state.reference_twist.begin() + 1);
 }
 
-[[gnu::always_inline]] inline void RodForces::work(const RodModel& model, const DaePoint& at, RodInstant& trial,
-                                                   const RodSums& out) {
+[[gnu::always_inline]] inline void RodForces::work(const RodModel& model, const DaePoint& at,
+                                                   RodInstant& trial, const RodSums& out) {
   work_on_edges(model, trial, out);
   work_on_vertices(model, at, trial, out);
 }
 
 // No product is joined with its sum in one rounding, so that all processors give the same bits.
-[[gnu::target("avx2")]] void RodForces::evaluate_avx2(const RodModel& model, const DaePoint& at, RodInstant& trial,
-                                                      const RodSums& out) {
+[[gnu::target("avx2")]] void RodForces::evaluate_avx2(const RodModel& model, const DaePoint& at,
+                                                      RodInstant& trial, const RodSums& out) {
   work(model, at, trial, out);
 }
 
-void RodForces::work_by_two(const RodModel& model, const DaePoint& at, RodInstant& trial, const RodSums& out) {
+void RodForces::work_by_two(const RodModel& model, const DaePoint& at, RodInstant& trial,
+                            const RodSums& out) {
   work(model, at, trial, out);
 }
 
@@ -292,13 +297,16 @@ void RodForces::gather(const RodModel& model, const RodSums& out) {
     out.by_curvature.col(i) = Vector2d(rows_.row(Row::by_curvature)[i], rows_.row(Row::by_curvature + 1)[i]);
 }
 
-void RodForces::add_end(const RodModel& model, const DaePoint& at, RodInstant& trial, End end, const RodSums& out) {
+void RodForces::add_end(const RodModel& model, const DaePoint& at, RodInstant& trial, End end,
+                        const RodSums& out) {
   const int i = model.vertex_at(end);
   SpatialState& state = trial.state;
   const std::optional<Frame>& mount = end == End::left ? state.left_mount : state.right_mount;
   double& twist = state.reference_twist[base::at(i)];
-  if (mount && end == End::left) twist = reference_twist(*mount, state.frames.front(), rows_.row(Row::old_twist)[i]);
-  if (mount && end == End::right) twist = reference_twist(state.frames.back(), *mount, rows_.row(Row::old_twist)[i]);
+  if (mount && end == End::left)
+    twist = reference_twist(*mount, state.frames.front(), rows_.row(Row::old_twist)[i]);
+  if (mount && end == End::right)
+    twist = reference_twist(state.frames.back(), *mount, rows_.row(Row::old_twist)[i]);
   model.rod().add_end_forces(state, end, out.assembly);
   if (!BendingCell::exists(model, i)) {
     if (model.is_curved())

@@ -37,13 +37,17 @@ class RodForces {
   using Row = RodRow;
   void take_unknowns(const RodModel& model, const numerics::DaePoint& at);
   void work(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const RodSums& out);
-  void evaluate_avx2(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const RodSums& out);
-  void work_by_two(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const RodSums& out);
+  void evaluate_avx2(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial,
+                     const RodSums& out);
+  void work_by_two(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial,
+                   const RodSums& out);
   void work_on_edges(const RodModel& model, RodInstant& trial, const RodSums& out);
-  void work_on_vertices(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, const RodSums& out);
+  void work_on_vertices(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial,
+                        const RodSums& out);
   void turn_frames(RodInstant& trial) const;
   void gather(const RodModel& model, const RodSums& out);
-  void add_end(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, End end, const RodSums& out);
+  void add_end(const RodModel& model, const numerics::DaePoint& at, RodInstant& trial, End end,
+               const RodSums& out);
 
   bool four_;
   std::optional<RodPlane> plane_;

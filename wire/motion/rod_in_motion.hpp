@@ -32,7 +32,7 @@ struct RodStrands {
 
 /// How a wire's bending is discretised.
 enum class Formulation {
-  vertices,     ///< curvature lumped at the vertices, chords that stretch: second order                  (W.27)
+  vertices,  ///< curvature lumped at the vertices, chords that stretch: second order                  (W.27)
   higher_order  ///< curvatures as unknowns, edges as beams: fourth order for loads on vertices, (W.31) to (W.33)
 };
 
@@ -64,7 +64,7 @@ struct RodTolerances {
 
 /// Where a mount that moves points, and how it turns, at given unknowns of the DAE.
 struct MountMotion {
-  Frame frame;                                        ///< direction of increasing arc length and director, in the world
+  Frame frame;  ///< direction of increasing arc length and director, in the world
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< [rad/s], in the world
 };
 

@@ -40,7 +40,8 @@ struct PlaneTurn {
         after_v(rows.at(Row::tangent + plane.axes[1], i)),
         inverse_a(rows.at(Row::inverse_length, i - 1)),
         inverse_b(rows.at(Row::inverse_length, i)),
-        kappa(2.0 * (before_u * after_v - before_v * after_u) / (1.0 + before_u * after_u + before_v * after_v)),
+        kappa(2.0 * (before_u * after_v - before_v * after_u) /
+              (1.0 + before_u * after_u + before_v * after_v)),
         slope(1.0 + 0.25 * kappa * kappa) {}
 
   /// phi [rad].
@@ -83,8 +84,9 @@ struct PlaneTurn {
     const Lanes tu = inverse * du, tv = inverse * dv;
     Lanes tension;
     if (model.is_curved()) {
-      const BalancedBeam<Lanes> beam = balanced_beam<Lanes>(
-          rest, chord, {rows.at(curvature, e), 0.0}, {rows.at(curvature, e + 1), 0.0}, stiffness, {bending, bending});
+      const BalancedBeam<Lanes> beam =
+          balanced_beam<Lanes>(rest, chord, {rows.at(curvature, e), 0.0}, {rows.at(curvature, e + 1), 0.0},
+                               stiffness, {bending, bending});
       tension = beam.tension;
       energy += there * (beam.energy + bent * rest);
       rows.add(by_curvature, e, there * beam.near[0]);
@@ -115,8 +117,8 @@ struct PlaneTurn {
 
 // A vertex turns by phi with kappa = 2 tan(phi/2), kappa' = 1 + kappa^2/4, whose moment M = dE/dphi + tau EI/l kappa'^2 phi' acts
 // across both edges (W.3): by the edge after (-t_v, t_u)/|b|, by the one before the same of it with the other sign.
-[[gnu::always_inline]] inline void work_on_vertices(const RodModel& model, const RodPlane& plane, const DaePoint& at,
-                                                    RodRows& rows, const RodSums& out) {
+[[gnu::always_inline]] inline void work_on_vertices(const RodModel& model, const RodPlane& plane,
+                                                    const DaePoint& at, RodRows& rows, const RodSums& out) {
   const int n = model.edges();
   const auto [u, v] = plane.axes;
   const int bending = plane.bending;
@@ -182,8 +184,10 @@ struct PlaneTurn {
     const std::array<Lanes, 2> t{rows.at(Row::tangent + axes[0], e), rows.at(Row::tangent + axes[1], e)};
     Lanes axial, tension;
     if (model.is_curved()) {
-      const Pair<Lanes> near{rows.at(Row::curvature + j, e), 0.0}, far{rows.at(Row::curvature + j, e + 1), 0.0};
-      const BalancedBeam<Lanes> beam = balanced_beam<Lanes>(rest, chord, near, far, stiffness, {bending, bending});
+      const Pair<Lanes> near{rows.at(Row::curvature + j, e), 0.0},
+          far{rows.at(Row::curvature + j, e + 1), 0.0};
+      const BalancedBeam<Lanes> beam =
+          balanced_beam<Lanes>(rest, chord, near, far, stiffness, {bending, bending});
       const BeamStiffness<Lanes> h = beam_stiffness<Lanes>(beam, rest, near, far, {bending, bending});
       axial = h.chord;
       tension = beam.tension;
@@ -209,7 +213,8 @@ struct PlaneTurn {
         w[r] = rows.at(Row::velocity + axes[r], e + 1) - rows.at(Row::velocity + axes[r], e);
       const Lanes rate = t[0] * w[0] + t[1] * w[1];
       const Lanes of_rate = viscous * rate * inverse;
-      for (const std::size_t r : {0U, 1U}) second[r] += viscous * inverse * (w[r] - rate * t[r]) - of_rate * t[r];
+      for (const std::size_t r : {0U, 1U})
+        second[r] += viscous * inverse * (w[r] - rate * t[r]) - of_rate * t[r];
       across += of_rate;
     }
     for (const std::size_t s : {0U, 1U}) {
@@ -240,7 +245,8 @@ struct PlaneTurn {
     const Lanes length = 0.5 * (rows.at(Row::rest_length, i - 1) + rows.at(Row::rest_length, i));
     // Of the edge before and of the one after: t, g and H.
     const Lanes a = -turn.inverse_a, b = turn.inverse_b;
-    const std::array<std::array<Lanes, 2>, 2> t{{{turn.before_u, turn.before_v}, {turn.after_u, turn.after_v}}};
+    const std::array<std::array<Lanes, 2>, 2> t{
+        {{turn.before_u, turn.before_v}, {turn.after_u, turn.after_v}}};
     const std::array<std::array<Lanes, 2>, 2> g{
         {{-(a * turn.before_v), a * turn.before_u}, {-(b * turn.after_v), b * turn.after_u}}};
     const auto twice = [&](std::size_t edge, std::size_t r, std::size_t s) __attribute__((always_inline)) {
@@ -272,7 +278,8 @@ struct PlaneTurn {
         std::array<Lanes, 2> w;
         for (const std::size_t r : {0U, 1U})
           w[r] = rows.at(Row::velocity + axes[r], e + 1) - rows.at(Row::velocity + axes[r], e);
-        for (const std::size_t r : {0U, 1U}) turned[edge][r] = twice(edge, r, 0) * w[0] + twice(edge, r, 1) * w[1];
+        for (const std::size_t r : {0U, 1U})
+          turned[edge][r] = twice(edge, r, 0) * w[0] + twice(edge, r, 1) * w[1];
       }
     }
     for (const std::size_t after_r : {0U, 1U}) {
@@ -287,7 +294,8 @@ struct PlaneTurn {
             if (own) value += moment * twice(after_r, r, s);
             if (time > 0.0) {
               value += viscosity * g[after_r][r] * turned[after_s][s];
-              blocks.add(entry(rate, axes[r], axes[s]), edge, there * viscosity * g[after_r][r] * g[after_s][s]);
+              blocks.add(entry(rate, axes[r], axes[s]), edge,
+                         there * viscosity * g[after_r][r] * g[after_s][s]);
             }
             blocks.add(entry(place, axes[r], axes[s]), edge, there * value);
           }
@@ -309,25 +317,26 @@ struct PlaneTurn {
   forces(model, plane, at, rows, out);
 }
 
-[[gnu::always_inline]] inline void stiffness_of(const RodModel& model, const RodPlane& plane, const RodRows& rows,
-                                                RodRows& blocks) {
+[[gnu::always_inline]] inline void stiffness_of(const RodModel& model, const RodPlane& plane,
+                                                const RodRows& rows, RodRows& blocks) {
   differentiate_edges(model, plane, rows, blocks);
   differentiate_vertices(model, plane, rows, blocks);
 }
 
-[[gnu::target("avx2")]] void stiffness_by_four(const RodModel& model, const RodPlane& plane, const RodRows& rows,
-                                               RodRows& blocks) {
+[[gnu::target("avx2")]] void stiffness_by_four(const RodModel& model, const RodPlane& plane,
+                                               const RodRows& rows, RodRows& blocks) {
   stiffness_of(model, plane, rows, blocks);
 }
 
 }  // namespace
 
-void work_out_forces(const RodModel& model, const RodPlane& plane, const DaePoint& at, bool four, RodRows& rows,
-                     const RodSums& out) {
+void work_out_forces(const RodModel& model, const RodPlane& plane, const DaePoint& at, bool four,
+                     RodRows& rows, const RodSums& out) {
   four ? forces_by_four(model, plane, at, rows, out) : forces(model, plane, at, rows, out);
 }
 
-void work_out_stiffness(const RodModel& model, const RodPlane& plane, const RodRows& rows, bool four, RodRows& blocks) {
+void work_out_stiffness(const RodModel& model, const RodPlane& plane, const RodRows& rows, bool four,
+                        RodRows& blocks) {
   four ? stiffness_by_four(model, plane, rows, blocks) : stiffness_of(model, plane, rows, blocks);
 }
 

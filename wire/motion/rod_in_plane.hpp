@@ -16,6 +16,7 @@ namespace snare::wire {
 void work_out_forces(const RodModel& model, const RodPlane& plane, const numerics::DaePoint& at, bool four,
                      RodRows& rows, const RodSums& out);
 /// The derivatives go to blocks, see stiffness_blocks.hpp, which are zero before; the rows are those that the forces have left.
-void work_out_stiffness(const RodModel& model, const RodPlane& plane, const RodRows& rows, bool four, RodRows& blocks);
+void work_out_stiffness(const RodModel& model, const RodPlane& plane, const RodRows& rows, bool four,
+                        RodRows& blocks);
 
 }  // namespace snare::wire

@@ -64,13 +64,15 @@ void RodModel::release(End end) {
   for (int k = 0; k < 3; ++k) held_[base::at(3 * vertex_at(end) + k)] = false;
 }
 
-void RodModel::declare(numerics::DaeLayout& layout, const std::string& name, const RodTolerances& tolerances) {
+void RodModel::declare(numerics::DaeLayout& layout, const std::string& name,
+                       const RodTolerances& tolerances) {
   const int n = vertices();
   const std::vector<std::string> axes{"x", "y", "z"};
   x_ = layout.add({name + " position", axes, 3 * n, DaeKind::differential, tolerances.position, 0, false});
   theta_ = layout.add({name + " twist angle", {}, n, DaeKind::algebraic, tolerances.angle, 0, false});
   v_ = layout.add({name + " velocity", axes, 3 * n,
-                   constants_.quasi_static ? DaeKind::algebraic : DaeKind::differential, tolerances.velocity, 0});
+                   constants_.quasi_static ? DaeKind::algebraic : DaeKind::differential, tolerances.velocity,
+                   0});
   if (is_curved()) {
     curvature_ = layout.add({name + " curvature",
                              {"1", "2"},
@@ -81,8 +83,8 @@ void RodModel::declare(numerics::DaeLayout& layout, const std::string& name, con
   }
   if (strands().act()) {
     // A thousandth of the curvature at which they slip.
-    strand_ =
-        layout.add({name + " strands", {"1", "2"}, 2 * n, DaeKind::differential, 1e-3 * strands().slip_curvature, 0});
+    strand_ = layout.add(
+        {name + " strands", {"1", "2"}, 2 * n, DaeKind::differential, 1e-3 * strands().slip_curvature, 0});
   }
 }
 
@@ -93,7 +95,8 @@ void RodInstant::take_edges() {
     const auto i = static_cast<int>(e);
     inverse_lengths[e] = 1.0 / std::sqrt((vertex(state, i + 1) - vertex(state, i)).squaredNorm());
     const Frame& frame = state.frames[e];
-    const Eigen::Vector3d first = turned_director(frame, state.q[SpatialState::block * i + SpatialState::angle]);
+    const Eigen::Vector3d first =
+        turned_director(frame, state.q[SpatialState::block * i + SpatialState::angle]);
     directors[e] = {first, frame.tangent.cross(first)};
   }
 }

@@ -76,7 +76,8 @@ std::vector<RodMode> rod_modes(const RodInMotion& rod, const Eigen::Matrix3Xd& r
     return m;
   };
   // dE/dtheta = 0 and dE/dk = 0 along: of these unknowns f, df = -K_ff^-1 K_fx dx.
-  const MatrixXd follow = -numerics::solve_by_lu(entries(following, following), entries(following, moving_rows));
+  const MatrixXd follow =
+      -numerics::solve_by_lu(entries(following, following), entries(following, moving_rows));
   MatrixXd stiffness = entries(moving_rows, moving_rows) + entries(moving_rows, following) * follow;
   VectorXd root_mass(static_cast<Index>(moving.size()));
   for (std::size_t a = 0; a < moving.size(); ++a)

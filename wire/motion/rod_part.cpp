@@ -100,7 +100,8 @@ std::optional<RodPlane> RodPart::plane_across(int normal) const {
   RodPlane plane{normal, {(normal + 1) % 3, (normal + 2) % 3}, stands_across ? 1 : 0, 1.0};
   const double across = stands_across ? -first.director[normal] : first.tangent.cross(first.director)[normal];
   plane.sign = across > 0.0 ? 1.0 : -1.0;
-  if (p.weight[normal] != 0.0 || p.natural_curvature[plane.odd()] != 0.0 || p.natural_twist != 0.0) return std::nullopt;
+  if (p.weight[normal] != 0.0 || p.natural_curvature[plane.odd()] != 0.0 || p.natural_twist != 0.0)
+    return std::nullopt;
   return plane;
 }
 
@@ -116,7 +117,8 @@ std::vector<int> RodPart::restrict_to_plane(const RodPlane& plane) {
   work_in(plane);
   std::vector<int> unknowns;
   for (int i = 0; i < vertices(); ++i) {
-    unknowns.insert(unknowns.end(), {position_of(i) + plane.normal, velocity_of(i) + plane.normal, angle_of(i)});
+    unknowns.insert(unknowns.end(),
+                    {position_of(i) + plane.normal, velocity_of(i) + plane.normal, angle_of(i)});
     if (model_.is_curved()) unknowns.push_back(model_.curvature_of(i) + plane.odd());
     if (model_.strands().act()) unknowns.push_back(strand_of(i) + plane.odd());
   }
@@ -135,7 +137,8 @@ void RodPart::take_unknowns(const numerics::VectorView& y) {
 }
 
 void RodPart::carry(End end, std::function<MountMotion(const numerics::VectorView& y)> motion) {
-  assert(model_.properties().end(end).kind != SpatialEnd::Kind::free && !model_.properties().end(end).gives());
+  assert(model_.properties().end(end).kind != SpatialEnd::Kind::free &&
+         !model_.properties().end(end).gives());
   carried_[index_of(end)] = std::move(motion);
   model_.release(end);
 }
@@ -208,9 +211,9 @@ void RodPart::jacobian(const DaePoint& at, double c, std::vector<double>& values
     } else {
       RodSlots::add_to(values, d.place, c);
       RodSlots::add_to(values, d.place_by_velocity, -1.0);
-      RodSlots::add_to(
-          values, d.velocity,
-          c * model_.inertia_of(i / RodModel::block) + model_.damping().mass_rate * mass_of(i / RodModel::block));
+      RodSlots::add_to(values, d.velocity,
+                       c * model_.inertia_of(i / RodModel::block) +
+                           model_.damping().mass_rate * mass_of(i / RodModel::block));
     }
   }
   stiffness_.add(model_, {forces_.rows(), trial_, at, c}, values);
@@ -312,7 +315,8 @@ RodPart::SectionLoads RodPart::section_loads(const DaePoint& at) {
   const auto tangent = [&state](int e) { return state.frames[base::at(e)].tangent; };
   const Matrix3Xd moments = rod().moments(state);
   for (int i = 0; i < vertices(); ++i) {
-    const Vector3d along = (tangent(std::max(i - 1, 0)) + tangent(std::min(i, model_.edges() - 1))).normalized();
+    const Vector3d along =
+        (tangent(std::max(i - 1, 0)) + tangent(std::min(i, model_.edges() - 1))).normalized();
     loads.bending_moments[i] = (moments.col(i) - along * along.dot(moments.col(i))).norm();
   }
   return loads;
@@ -369,7 +373,8 @@ RodPart::Energies RodPart::energies(const DaePoint& at) {
     const int i = model_.vertex_at(which);
     result.mount_forces[side] = assembly_.gradient.segment<3>(RodModel::block * i);
     if (!is_held(i, 0)) {
-      result.mount_forces[side].x() = -end.translational_stiffness * (at.y[position_of(i)] - end.position.x());
+      result.mount_forces[side].x() =
+          -end.translational_stiffness * (at.y[position_of(i)] - end.position.x());
     }
     result.mount_moments[side] = vertex(state, i).cross(result.mount_forces[side]) + losses_.couples[side] +
                                  (which == End::left ? Vector3d(-moments[side]) : moments[side]);

@@ -39,7 +39,9 @@ class RodPart final : public numerics::DaePart {
   RodPart(std::string name, const RodInMotion& rod, const RodTolerances& tolerances);
 
   void declare(numerics::DaeLayout& layout) override;
-  void sparsity(std::vector<std::pair<int, int>>& entries) const override { append_sparsity(model_, entries); }
+  void sparsity(std::vector<std::pair<int, int>>& entries) const override {
+    append_sparsity(model_, entries);
+  }
   void rates(std::vector<std::pair<int, int>>& pairs) const override;
   void attach_pattern(const numerics::SparseMatrix& pattern) override;
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
@@ -90,7 +92,9 @@ class RodPart final : public numerics::DaePart {
   [[nodiscard]] double mass_of(int vertex) const { return model_.mass_of(vertex); }
   [[nodiscard]] bool is_held(int vertex, int k) const { return model_.is_held(vertex, k); }
   /// Material coordinate of a vertex, from the left mount [m].
-  [[nodiscard]] double coordinate(int vertex) const { return rod().mesh().coordinate(vertex, model_.controls()); }
+  [[nodiscard]] double coordinate(int vertex) const {
+    return rod().mesh().coordinate(vertex, model_.controls());
+  }
   /// Largest distance of rigidly held components from their mounts [m].
   [[nodiscard]] double mount_error(const numerics::VectorView& y) const;
 

@@ -20,7 +20,8 @@ namespace {
 void spread_twist(const RodPart& part, VectorXd& y) {
   const RodModel& model = part.model();
   VectorXd q = VectorXd::Zero(model.bands());
-  for (int i = 0; i < part.vertices(); ++i) q.segment<3>(RodModel::block * i) = y.segment<3>(part.position_of(i));
+  for (int i = 0; i < part.vertices(); ++i)
+    q.segment<3>(RodModel::block * i) = y.segment<3>(part.position_of(i));
   const SpatialState state = part.rod().make_state(q, model.controls());
   const double left = model.properties().left.twist_angle;
   const double right = model.properties().right.twist_angle + state.reference_twist.back();
@@ -71,7 +72,8 @@ RodRest find_rest(const RodInMotion& constants, const Eigen::Matrix3Xd& start) {
     for (int i = 0; i < part.vertices(); ++i) {
       for (int k = 0; k < 3; ++k) residual = std::max(residual, std::abs(rows[part.velocity_of(i) + k]));
     }
-    for (const Eigen::Vector3d& force : part.energies(at).mount_forces) largest = std::max(largest, force.norm());
+    for (const Eigen::Vector3d& force : part.energies(at).mount_forces)
+      largest = std::max(largest, force.norm());
     result.report.residual_norm = residual;
     const double allowed =
         force_tolerance(1e-10, stiffness, rod.properties.axial_stiffness, rod.length, shortest, largest);

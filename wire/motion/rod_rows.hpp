@@ -42,7 +42,8 @@ struct RodRow {
 class RodRows {
  public:
   RodRows(int count, int vertices)
-      : length_(before + (vertices + lanes - 1) / lanes * lanes + lanes), data_(base::at(count * length_), 0.0) {}
+      : length_(before + (vertices + lanes - 1) / lanes * lanes + lanes),
+        data_(base::at(count * length_), 0.0) {}
 
   /// How many vertices or edges have numbers, those that are none included.
   [[nodiscard]] int length() const { return length_ - before; }
@@ -51,14 +52,20 @@ class RodRows {
   [[nodiscard]] const double* row(int r) const { return data_.data() + r * length_ + before; }
 
   /// Of four vertices or edges, i being the first: a number, or the three of three rows.
-  [[nodiscard, gnu::always_inline]] numerics::Lanes at(int r, int i) const { return numerics::Lanes::at(row(r) + i); }
+  [[nodiscard, gnu::always_inline]] numerics::Lanes at(int r, int i) const {
+    return numerics::Lanes::at(row(r) + i);
+  }
   [[nodiscard, gnu::always_inline]] numerics::Lanes3 at3(int r, int i) const {
     return numerics::Lanes3::at(row(r) + i, length_);
   }
   [[gnu::always_inline]] void set(int r, int i, const numerics::Lanes& value) { value.store(row(r) + i); }
-  [[gnu::always_inline]] void set(int r, int i, const numerics::Lanes3& value) { value.store(row(r) + i, length_); }
+  [[gnu::always_inline]] void set(int r, int i, const numerics::Lanes3& value) {
+    value.store(row(r) + i, length_);
+  }
   [[gnu::always_inline]] void add(int r, int i, const numerics::Lanes& value) { value.add_to(row(r) + i); }
-  [[gnu::always_inline]] void add(int r, int i, const numerics::Lanes3& value) { value.add_to(row(r) + i, length_); }
+  [[gnu::always_inline]] void add(int r, int i, const numerics::Lanes3& value) {
+    value.add_to(row(r) + i, length_);
+  }
   /// Zeros in all of them, or in some rows.
   void clear() { std::ranges::fill(data_, 0.0); }
   void clear(int first, int rows) { std::fill_n(data_.begin() + first * length_, rows * length_, 0.0); }

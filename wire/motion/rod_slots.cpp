@@ -111,8 +111,8 @@ using CellColumn = std::array<double, CellRows::count>;
 
 /// What a cell does to its balances by one of its unknowns: an angle's rate is c times the angle, a place's an unknown of its own.
 template <class Slots>
-void add_column(const Slots& slots, std::size_t column, const CellColumn& by_place, const CellColumn& by_rate, double c,
-                std::vector<double>& values) {
+void add_column(const Slots& slots, std::size_t column, const CellColumn& by_place, const CellColumn& by_rate,
+                double c, std::vector<double>& values) {
   const int* place = slots.place.data() + by_place.size() * column;
   const int* rate = slots.rate.data() + by_rate.size() * column;
   const bool angle = column == CellRows::angle_before || column == CellRows::angle_after;

@@ -48,7 +48,8 @@ template <int r, int s>
   else if constexpr (k == of_angle)
     return after_r != after_s ? h.theta_ab : after_r ? h.theta_bb : h.theta_aa;
   else if constexpr (m == of_angle)
-    return after_r ? (after_s ? h.b_theta_b[k] : h.b_theta_a[k]) : (after_s ? h.a_theta_b[k] : h.a_theta_a[k]);
+    return after_r ? (after_s ? h.b_theta_b[k] : h.b_theta_a[k])
+                   : (after_s ? h.a_theta_b[k] : h.a_theta_a[k]);
   else if constexpr (after_r)
     return after_s ? h.bb(k, m) : h.ab(m, k);
   else
@@ -148,7 +149,8 @@ RodStiffness::RodStiffness(const RodModel& model, bool four)
     const SpatialCellOf<Lanes>& cell = inner.cell;
     PairHessianOf<Lanes> h;
     add_twist_hessian<Lanes>(cell.turn, cell.inverse, cell.torque, cell.twist_stiffness, h);
-    if (terms.bends) add_cosine_hessian<Lanes>(cell.turn, cell.inverse, cell.by_cosine, cell.by_cosine_twice, h);
+    if (terms.bends)
+      add_cosine_hessian<Lanes>(cell.turn, cell.inverse, cell.by_cosine, cell.by_cosine_twice, h);
     // Products of vectors that are added: left right^T.
     std::array<PairVector, 4> left{}, right{};
     std::array<PairVector, 2> slope{};
@@ -190,7 +192,8 @@ RodStiffness::RodStiffness(const RodModel& model, bool four)
         right[j] = listed(turned);
       }
       if (model.is_curved()) {
-        add_cosine_hessian<Lanes>(cell.turn, cell.inverse, of_turning * share.first, of_turning * share.second, h);
+        add_cosine_hessian<Lanes>(cell.turn, cell.inverse, of_turning * share.first,
+                                  of_turning * share.second, h);
         PairGradientOf<Lanes> cosine;
         add_cosine_gradient<Lanes>(cell.turn, cell.inverse, share.first, cosine);
         left[2] = right[3] = listed(cosine);
@@ -258,7 +261,8 @@ void RodStiffness::add_end(const RodModel& model, const Point& point, End end) {
   const int coupling = end == End::left ? near_curvature : far_curvature;
   for (int j = 0; j < 2; ++j) {
     for (int r = 0; r < 4; ++r) blocks_.row(entry(coupling, r, j))[e] += bending.hessian(r, 4 + j);
-    for (int k = 0; k < 2; ++k) blocks_.row(entry_of_two(curvature, k, j))[i] += bending.hessian(4 + k, 4 + j);
+    for (int k = 0; k < 2; ++k)
+      blocks_.row(entry_of_two(curvature, k, j))[i] += bending.hessian(4 + k, 4 + j);
   }
 }
 
@@ -324,7 +328,8 @@ template <class Components, class ByPlace, class ByRate>
   between(own_rate, next_rate, last_rate, by_rate);
   if (!Components::turns) return;
   for (const int r : components.axes) {
-    const int o = entry(own_place, r, of_angle), x = entry(next_place, r, of_angle), b = entry(last_place, r, of_angle);
+    const int o = entry(own_place, r, of_angle), x = entry(next_place, r, of_angle),
+              b = entry(last_place, r, of_angle);
     by_place(r, of_angle - 2 * block, at(b, i - 2));
     by_place(r, of_angle - block, at(o, i - 1) - at(b, i - 1));
     by_place(r, of_angle, at(x, i - 1) - at(o, i));
@@ -339,8 +344,9 @@ template <class Components, class ByPlace, class ByRate>
 /// the curvature and for its row by the place; own(j, k, value) and next(j, k, value) of its row j by its own curvature k and by
 /// that of the next vertex.
 template <class Components, class ByCell, class Own, class Next>
-[[gnu::always_inline]] inline void visit_curvatures(const RodRows& blocks, int i, const Components& components,
-                                                    const ByCell& by_cell, const Own& own, const Next& next) {
+[[gnu::always_inline]] inline void visit_curvatures(const RodRows& blocks, int i,
+                                                    const Components& components, const ByCell& by_cell,
+                                                    const Own& own, const Next& next) {
   const auto at = [&blocks](int r, int e) __attribute__((always_inline)) {
     return blocks.at(r, e);
   };
@@ -396,10 +402,12 @@ void RodStiffness::list_slots(const RodModel& model, const RodSlots& slots, cons
         [&](int local, int j, const Lanes&) {
           const auto unknown = [&](int k) { return CellRows::first_band(k) + local; };
           const auto is = [&](int k) { return unknown(k) >= 0 && unknown(k) < bands - 1; };
-          list(i,
-               [&](int k) { return is(k) ? slots.slot(model.balance_of(unknown(k)), model.curvature_of(k) + j) : -1; });
-          list(i,
-               [&](int k) { return is(k) ? slots.slot(model.curvature_of(k) + j, model.unknown_of(unknown(k))) : -1; });
+          list(i, [&](int k) {
+            return is(k) ? slots.slot(model.balance_of(unknown(k)), model.curvature_of(k) + j) : -1;
+          });
+          list(i, [&](int k) {
+            return is(k) ? slots.slot(model.curvature_of(k) + j, model.unknown_of(unknown(k))) : -1;
+          });
         },
         [&](int j, int m, const Lanes&) {
           list(i, [&](int k) { return slots.slot(model.curvature_of(k) + j, model.curvature_of(k) + m); });
@@ -417,7 +425,8 @@ void RodStiffness::list_slots(const RodModel& model, const RodSlots& slots, cons
 }
 
 template <class Components>
-[[gnu::always_inline]] inline void RodStiffness::put_components(const RodModel& model, const Components& components,
+[[gnu::always_inline]] inline void RodStiffness::put_components(const RodModel& model,
+                                                                const Components& components,
                                                                 std::vector<double>& values) const {
   const int* slot = slots_.data();
   double* const to = values.data();
@@ -440,14 +449,16 @@ template <class Components>
   }
 }
 
-[[gnu::always_inline]] inline void RodStiffness::put_all(const RodModel& model, std::vector<double>& values) const {
+[[gnu::always_inline]] inline void RodStiffness::put_all(const RodModel& model,
+                                                         std::vector<double>& values) const {
   if (plane_)
     put_components(model, InPlane(*plane_), values);
   else
     put_components(model, InSpace(), values);
 }
 
-[[gnu::target("avx2")]] void RodStiffness::put_by_four(const RodModel& model, std::vector<double>& values) const {
+[[gnu::target("avx2")]] void RodStiffness::put_by_four(const RodModel& model,
+                                                       std::vector<double>& values) const {
   put_all(model, values);
 }
 

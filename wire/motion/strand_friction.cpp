@@ -24,15 +24,16 @@ StrandResponse::StrandResponse(const RodStrands& s, const Vector2d& held, const 
   rate = (m - held) / s.time;
 }
 
-Vector2d strand_moment(const RodModel& model, int i, double length, const Vector2d& rates, const numerics::DaePoint& at,
-                       RodLosses& losses) {
+Vector2d strand_moment(const RodModel& model, int i, double length, const Vector2d& rates,
+                       const numerics::DaePoint& at, RodLosses& losses) {
   const Vector2d held = at.y.segment<2>(model.strand_of(i));
   const StrandResponse s(model.strands(), held, rates / length);
   losses.strand_rates[base::at(i)] = s.rate;
   const double stiffness = model.strands().extra_stiffness * length;
   losses.strand_energy += 0.5 * stiffness * held.squaredNorm();
   // The dashpot's heat k_x tau |z'|^2 l and that of the sliding, k_x m.(kappa' - l z').
-  losses.power += stiffness * model.strands().time * s.rate.squaredNorm() + s.moment.dot(rates - length * s.rate);
+  losses.power +=
+      stiffness * model.strands().time * s.rate.squaredNorm() + s.moment.dot(rates - length * s.rate);
   return s.moment;
 }
 
@@ -49,8 +50,8 @@ void add_resting_strands_jacobian(const RodModel& model, int i, double c, const 
 //   balances, k_x sum_j m_j g_j:   by z_k    k_x S_jk g_j,
 //                                  by places k_x [m_j H_j + tau/l S_jk g_j (H_k r)^T],   by rates k_x tau/l
 //                                    S_jk g_j g_k^T.
-void add_strands_jacobian(const RodModel& model, const BendingCell& cell, int i, const numerics::DaePoint& at, double c,
-                          const RodSlots& slots, std::vector<double>& values) {
+void add_strands_jacobian(const RodModel& model, const BendingCell& cell, int i, const numerics::DaePoint& at,
+                          double c, const RodSlots& slots, std::vector<double>& values) {
   add_resting_strands_jacobian(model, i, c, slots, values);
   const int z = model.strand_of(i);
   const RodStrands& s = model.strands();

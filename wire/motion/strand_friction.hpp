@@ -25,14 +25,15 @@ struct StrandResponse {
 
 /// What the strands of vertex i answer to rates of its curvatures kappa_j [1/s], as a moment [N m]; what they hold and lose is added. length: of its
 /// cell [m].                                                                                 theory.md (M.14)
-[[nodiscard]] Eigen::Vector2d strand_moment(const RodModel& model, int i, double length, const Eigen::Vector2d& rates,
-                                            const numerics::DaePoint& at, RodLosses& losses);
+[[nodiscard]] Eigen::Vector2d strand_moment(const RodModel& model, int i, double length,
+                                            const Eigen::Vector2d& rates, const numerics::DaePoint& at,
+                                            RodLosses& losses);
 
 /// The Jacobian of vertex i's rows of z and of its cell's balances by z, places and rates. A vertex that does
 /// not bend has z' = 0. c: of DaePart::jacobian [1/s].
 void add_resting_strands_jacobian(const RodModel& model, int i, double c, const RodSlots& slots,
                                   std::vector<double>& values);
-void add_strands_jacobian(const RodModel& model, const BendingCell& cell, int i, const numerics::DaePoint& at, double c,
-                          const RodSlots& slots, std::vector<double>& values);
+void add_strands_jacobian(const RodModel& model, const BendingCell& cell, int i, const numerics::DaePoint& at,
+                          double c, const RodSlots& slots, std::vector<double>& values);
 
 }  // namespace snare::wire

@@ -17,7 +17,9 @@ TurningShare<double> turning::of_any(double u) {
 }
 
 VertexTurning::VertexTurning(const BendingCell& cell)
-    : cell_(cell), share_(turning_share(cell.turn)), curvatures_(curvatures(cell.turn, cell.before, cell.after)) {}
+    : cell_(cell),
+      share_(turning_share(cell.turn)),
+      curvatures_(curvatures(cell.turn, cell.before, cell.after)) {}
 
 // d(f kappa) = f dkappa + kappa f' dc
 PairGradient VertexTurning::gradient(const Vector2d& weights) const {
@@ -33,7 +35,8 @@ PairHessian VertexTurning::hessian(const Vector2d& weights) const {
   PairHessian h;
   const WeightedCurvature kappa = curvature(weights);
   curvature(share_.value * weights).add_hessian(cell_.inverse, h);
-  add_cosine_hessian(cell_.turn, cell_.inverse, kappa.value() * share_.first, kappa.value() * share_.second, h);
+  add_cosine_hessian(cell_.turn, cell_.inverse, kappa.value() * share_.first, kappa.value() * share_.second,
+                     h);
   for (const double sign : {1.0, -1.0}) {
     PairGradient g;
     kappa.add_gradient(cell_.inverse, g);
@@ -46,7 +49,8 @@ PairHessian VertexTurning::hessian(const Vector2d& weights) const {
 // dc = -1/2 chi kb.omega (W.29)
 Vector3d VertexTurning::by_rotation(const Vector2d& weights) const {
   const WeightedCurvature kappa = curvature(weights);
-  return share_.value * kappa.by_rotation() - 0.5 * kappa.value() * share_.first * cell_.turn.chi * cell_.turn.binormal;
+  return share_.value * kappa.by_rotation() -
+         0.5 * kappa.value() * share_.first * cell_.turn.chi * cell_.turn.binormal;
 }
 
 }  // namespace snare::wire

@@ -50,9 +50,10 @@ inline constexpr double series = 1e-2;  // six powers leave 1e-12 of f''
 /// f and its derivatives by u = tan^2(phi/2): by powers, and of any angle.
 template <class S>
 [[nodiscard, gnu::always_inline]] inline TurningShare<S> of_small(const S& u) {
-  return {1.0 - u * (1.0 / 3 - u * (1.0 / 5 - u * (1.0 / 7 - u * (1.0 / 9 - u * (1.0 / 11 - u * (1.0 / 13)))))),
-          -1.0 / 3 + u * (2.0 / 5 - u * (3.0 / 7 - u * (4.0 / 9 - u * (5.0 / 11 - u * (6.0 / 13))))),
-          2.0 / 5 - u * (6.0 / 7 - u * (12.0 / 9 - u * (20.0 / 11 - u * (30.0 / 13 - u * (42.0 / 15)))))};
+  return {
+      1.0 - u * (1.0 / 3 - u * (1.0 / 5 - u * (1.0 / 7 - u * (1.0 / 9 - u * (1.0 / 11 - u * (1.0 / 13)))))),
+      -1.0 / 3 + u * (2.0 / 5 - u * (3.0 / 7 - u * (4.0 / 9 - u * (5.0 / 11 - u * (6.0 / 13))))),
+      2.0 / 5 - u * (6.0 / 7 - u * (12.0 / 9 - u * (20.0 / 11 - u * (30.0 / 13 - u * (42.0 / 15)))))};
 }
 /// u: [-].
 [[nodiscard]] TurningShare<double> of_any(double u);

@@ -47,8 +47,8 @@ StickingStiffness sticking_stiffness(const Properties& p) {
 ///
 /// tolerance * (EI/L^2 + largest tension) and the force that the last places of the coordinates make in the
 /// shortest edge, eps L (EA/2h + 2 EI/h^3): an iteration may stall at some times that.
-inline double force_tolerance(double tolerance, double bending_stiffness, double axial_stiffness, double length,
-                              double shortest_edge, double largest_force) {
+inline double force_tolerance(double tolerance, double bending_stiffness, double axial_stiffness,
+                              double length, double shortest_edge, double largest_force) {
   const double scale = bending_stiffness / (length * length) + largest_force;
   const double h = shortest_edge;
   const double round_off = std::numeric_limits<double>::epsilon() * length *
@@ -116,7 +116,8 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
     // Round-off may hold the residual at some times its tolerance.
     const bool stalled = residual <= 16.0 * allowed && residual >= 0.5 * previous;
     previous = residual;
-    if ((residual <= allowed || stalled) && (options.branch == Branch::nearest || report.negative_pivots <= 0)) {
+    if ((residual <= allowed || stalled) &&
+        (options.branch == Branch::nearest || report.negative_pivots <= 0)) {
       report.termination = numerics::Termination::converged;
       return report;
     }
@@ -124,8 +125,9 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
 
     if (options.branch == Branch::stable) {
       // Shift until positive definite; start from the last shift, so that a long descent does not search anew.
-      double trial =
-          (factored && factor.negative_pivots() == 0) ? 0.0 : std::max(shift, 1e-3 * ei / std::pow(length, 3));
+      double trial = (factored && factor.negative_pivots() == 0)
+                         ? 0.0
+                         : std::max(shift, 1e-3 * ei / std::pow(length, 3));
       while (trial > 0.0) {
         numerics::SymmetricBandMatrix shifted = assembly.hessian;
         for (int i = 0; i < shifted.order(); ++i) shifted.lower(i, i) += trial;
@@ -162,10 +164,12 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
       if (!std::isfinite(residual)) continue;
       // Near the end energies differ by round-off only: a falling residual then is enough.
       accepted = residual <= 0.5 * old_residual && options.branch == Branch::nearest;
+      accepted = accepted || (options.branch == Branch::stable &&
+                              assembly.energy <= old_energy + 1e-4 * fraction * slope);
       accepted =
-          accepted || (options.branch == Branch::stable && assembly.energy <= old_energy + 1e-4 * fraction * slope);
-      accepted = accepted || (std::abs(fraction * slope) < 1e-12 * std::abs(old_energy) && residual < old_residual);
-      accepted = accepted || (options.branch == Branch::nearest && residual < (1.0 - 1e-4 * fraction) * old_residual);
+          accepted || (std::abs(fraction * slope) < 1e-12 * std::abs(old_energy) && residual < old_residual);
+      accepted = accepted ||
+                 (options.branch == Branch::nearest && residual < (1.0 - 1e-4 * fraction) * old_residual);
       if (accepted) break;
     }
     if (!accepted) {

@@ -55,9 +55,11 @@ LooseWire find_loose_wire(const PlanarRod& rod, const Controls& controls, int mo
     Eigen::Vector2d x = p.left.position;
     result.state.q.segment<2>(0) = x;
     for (int e = 0; e < n; ++e) {
-      const double middle = 0.5 * (mesh.coordinate(e, controls) + mesh.coordinate(e + 1, controls)) - controls.left;
+      const double middle =
+          0.5 * (mesh.coordinate(e, controls) + mesh.coordinate(e + 1, controls)) - controls.left;
       const double angle = amplitude * mode_angle(p.left.kind, mode, middle / length);
-      x += mesh.rest_length(e, controls) * buckled_length / length * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+      x += mesh.rest_length(e, controls) * buckled_length / length *
+           Eigen::Vector2d(std::cos(angle), std::sin(angle));
       result.state.q.segment<2>(2 * (e + 1)) = x;
     }
     return x.x() - p.left.position.x();
@@ -105,13 +107,14 @@ SpatialState in_space(const SpatialRod& rod, const PlanarState& planar, double p
   Eigen::VectorXd q = Eigen::VectorXd::Zero(rod.unknowns());
   for (int i = 0; i < rod.mesh().vertices(); ++i) {
     const Eigen::Vector2d x = vertex(planar, i);
-    q.segment<3>(SpatialRod::block * i) = Eigen::Vector3d(x.x(), x.y() * std::cos(plane), x.y() * std::sin(plane));
+    q.segment<3>(SpatialRod::block * i) =
+        Eigen::Vector3d(x.x(), x.y() * std::cos(plane), x.y() * std::sin(plane));
   }
   return rod.make_state(q, planar.controls);
 }
 
-LooseSpatialWire find_loose_wire(const SpatialRod& rod, const PlanarRod& planar, const Controls& controls, int mode,
-                                 double plane) {
+LooseSpatialWire find_loose_wire(const SpatialRod& rod, const PlanarRod& planar, const Controls& controls,
+                                 int mode, double plane) {
   const LooseWire flat = find_loose_wire(planar, controls, mode);
   LooseSpatialWire result{in_space(rod, flat.state, plane), flat.report};
   if (!flat.report.usable()) return result;

@@ -32,7 +32,7 @@ struct LooseSpatialWire {
   SpatialState state;
   EquilibriumReport report;
 };
-[[nodiscard]] LooseSpatialWire find_loose_wire(const SpatialRod& rod, const PlanarRod& planar, const Controls& controls,
-                                               int mode, double plane);
+[[nodiscard]] LooseSpatialWire find_loose_wire(const SpatialRod& rod, const PlanarRod& planar,
+                                               const Controls& controls, int mode, double plane);
 
 }  // namespace snare::wire

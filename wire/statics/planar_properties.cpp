@@ -48,8 +48,9 @@ PlanarRodProperties planar_rod_properties(const WireSpecification& wire, const M
     const double area = 0.25 * std::numbers::pi * wire.diameter * wire.diameter;
     const double second_moment = area * wire.diameter * wire.diameter / 16.0;
     const double stress = wire.yielding->yield_stress;
-    properties.bending_sliders = yielding_section(properties.bending_stiffness, wire.diameter,
-                                                  stress * second_moment / properties.bending_stiffness, hardening);
+    properties.bending_sliders =
+        yielding_section(properties.bending_stiffness, wire.diameter,
+                         stress * second_moment / properties.bending_stiffness, hardening);
     properties.axial_sliders = {
         {(1.0 - hardening) * properties.axial_stiffness, stress * area / properties.axial_stiffness}};
     properties.bending_stiffness *= hardening;

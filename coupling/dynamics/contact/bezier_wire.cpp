@@ -40,7 +40,8 @@ BezierWire::BezierWire(const wire::RodPart& rod) : rod_(rod) {
     // X = a0 + a1 u + a2 u^2 + ... at its beginning, and the vertex at its end.
     const Vector4d a1 = piece.length * w.slope;
     const Vector4d a2 = 0.5 * piece.length * piece.length * w.bend;
-    piece.weights << w.value, w.value + a1 / 3.0, w.value + 2.0 / 3.0 * a1 + a2 / 3.0, Vector4d::Unit(e + 1 - w.first);
+    piece.weights << w.value, w.value + a1 / 3.0, w.value + 2.0 / 3.0 * a1 + a2 / 3.0,
+        Vector4d::Unit(e + 1 - w.first);
     largest_weight_sum_ = std::max(largest_weight_sum_, piece.weights.cwiseAbs().colwise().sum().maxCoeff());
     longest_ = std::max(longest_, piece.length);
     shortest_ = e == 0 ? piece.length : std::min(shortest_, piece.length);

@@ -92,16 +92,17 @@ Rubbed<S> rub(const MotionFriction& friction, const Pressed<S>& a, const Vector3
   constexpr double idle = BristleMeans::idle_load, forget = idle / BristleMeans::idle_time;
   const double time = friction.bristle_time;
   const BristleFlowIn<3> flow = bristle_flow(friction, at, f, value_of(a.elastic_rate));
-  const Vector3<S> lying_flow =
-      lifted(flow.flow, in, [&](const BristleChangeIn<3>& by) { return flow_change(friction, at, f, flow, by); });
-  const S decay = a.elastic / S(time) + S(0.5) * (flow.growth_follows ? a.elastic_rate : -a.elastic / S(time));
+  const Vector3<S> lying_flow = lifted(
+      flow.flow, in, [&](const BristleChangeIn<3>& by) { return flow_change(friction, at, f, flow, by); });
+  const S decay =
+      a.elastic / S(time) + S(0.5) * (flow.growth_follows ? a.elastic_rate : -a.elastic / S(time));
   r.rate = R_WS.transpose() * (lying_flow - upright * decay - bent * S(forget)) / (a.elastic + S(idle));
   r.slider_speed = f.slider_speed;
   const double stiffness = friction.static_coefficient / friction.bristle_displacement;
   const double square = values_of(bent).squaredNorm(), upright_square = values_of(upright).squaredNorm();
   r.energy = 0.5 * stiffness * (at.elastic + idle) * square;
-  r.heat =
-      flow.heat + stiffness * (forget * square + (value_of(decay) - 0.5 * value_of(a.elastic_rate)) * upright_square);
+  r.heat = flow.heat + stiffness * (forget * square +
+                                    (value_of(decay) - 0.5 * value_of(a.elastic_rate)) * upright_square);
   return r;
 }
 
@@ -191,7 +192,8 @@ std::vector<MotionEvent> BodyContactPart::changes(const DaePoint& now, double ti
   const bool closed = !work.wrenches.empty();
   const Seen before = std::exchange(seen_, {closed, sample.sticking});
   std::vector<MotionEvent> events;
-  if (closed && !before.closed && !event) events.push_back({.time = time_before, .kind = MotionEvent::Kind::touch});
+  if (closed && !before.closed && !event)
+    events.push_back({.time = time_before, .kind = MotionEvent::Kind::touch});
   if (!has_bristle() || !closed || !before.closed || sample.sticking == before.sticking) return events;
   const auto kind = sample.sticking ? MotionEvent::Kind::stick : MotionEvent::Kind::slip;
   events.push_back({.time = now.time, .kind = kind, .approach_speed = sample.slip_speed});
@@ -217,7 +219,8 @@ void BodyContactPart::residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::V
   if (!list.empty()) {
     std::array<FrameWrench<double>, 2> wrenches;
     for (const Acting& a : list) add_wrenches(wrenches, now, a.pressed, a.rubbed);
-    for (std::size_t k = 0; k < 2; ++k) frames()[k].push(at.y, Wrench{wrenches[k].moment, wrenches[k].force}, rows);
+    for (std::size_t k = 0; k < 2; ++k)
+      frames()[k].push(at.y, Wrench{wrenches[k].moment, wrenches[k].force}, rows);
   }
   if (!has_bristle()) return;
   const Eigen::VectorXd rates = bristle_rates(list, at.y);

@@ -64,7 +64,8 @@ class BodyContactPart final : public UnilateralForcePart {
   /// What each point inside does.
   struct Acting;
   [[nodiscard]] std::vector<Acting> acting(const Frames& now, const numerics::VectorView& y) const;
-  [[nodiscard]] Eigen::VectorXd bristle_rates(const std::vector<Acting>& acting, const numerics::VectorView& y) const;
+  [[nodiscard]] Eigen::VectorXd bristle_rates(const std::vector<Acting>& acting,
+                                              const numerics::VectorView& y) const;
   /// A point of the other's frame in the frame of the shape.
   [[nodiscard]] static Eigen::Vector3d in_shape(const Frames& now, const Eigen::Vector3d& point);
   /// The points that are in the shape, in their order, with its field there.

@@ -38,7 +38,8 @@ struct BristleMeans {
   /// -d(dz_i/dt)/dz_i of what forgets [1/s].
   [[nodiscard]] double forgetting(int vertex) const { return idle_load / idle_time / loads[vertex]; }
   /// -d(dz_i/dt) [m/s] by what changes at a place: load_change [N] of H_i p_e, flow_change [N m/s] of H_i p_e dz/dt.
-  [[nodiscard]] Eigen::Vector2d change(int vertex, double load_change, const Eigen::Vector2d& flow_change) const {
+  [[nodiscard]] Eigen::Vector2d change(int vertex, double load_change,
+                                       const Eigen::Vector2d& flow_change) const {
     return (load_change * rates.col(vertex) - flow_change) / loads[vertex];
   }
   /// What the bristles hold at the deflections z [m], and the heat of those that forget; with this friction [J], [W].

@@ -20,9 +20,9 @@ Vector3d axis_across(const Vector3d& n) {
 
 }  // namespace
 
-ContactGeometry contact_geometry(const MotionContact& contact, const ContactShape& shape, const CurvePoint& curve,
-                                 const BodyPart& body, const VectorView& y, const BristlesBeside& beside,
-                                 ContactPlace place) {
+ContactGeometry contact_geometry(const MotionContact& contact, const ContactShape& shape,
+                                 const CurvePoint& curve, const BodyPart& body, const VectorView& y,
+                                 const BristlesBeside& beside, ContactPlace place) {
   ContactGeometry g;
   const bool at_mount = place == ContactPlace::mount;
   static_cast<CurvePoint&>(g) = curve;
@@ -81,7 +81,8 @@ ContactGeometry contact_geometry(const MotionContact& contact, const ContactShap
 }
 
 // Against the turned body the wire's point moves by rho = dX - dp - phi x r; then dg = n.rho and dn = H rho + phi x n.
-ContactChange contact_change(const MotionFriction& friction, const ContactGeometry& g, const ContactDirection& d) {
+ContactChange contact_change(const MotionFriction& friction, const ContactGeometry& g,
+                             const ContactDirection& d) {
   ContactChange c;
   const Vector3d dx = d.x + g.slope * d.zeta;
   const Vector3d dslope = d.slope + g.bend * d.zeta;
@@ -92,28 +93,31 @@ ContactChange contact_change(const MotionFriction& friction, const ContactGeomet
   c.tangency = g.slope.dot(c.normal) + g.normal.dot(dslope);
   // dw = dv - dv_B - domega x r - omega x dr,  domega = phi x omega + R dspin;  d(dg/dt) = w.dn + n.dw
   const Vector3d domega = d.turn.cross(g.omega) + g.R_WB * d.spin;
-  const Vector3d drelative = d.v + g.slope_v * d.zeta - d.body_velocity - domega.cross(g.arm) - g.omega.cross(darm);
+  const Vector3d drelative =
+      d.v + g.slope_v * d.zeta - d.body_velocity - domega.cross(g.arm) - g.omega.cross(darm);
   c.gap_rate = g.relative.dot(c.normal) + g.normal.dot(drelative);
   double opening = (g.opening.by_gap + g.opening.by_across) * c.gap_rate;
   if (g.opening.by_across != 0.0) {
     const Vector3d ddirection = (dslope - g.direction.dot(dslope) * g.direction) / g.slope.norm();
-    opening -=
-        g.opening.by_across * ((c.normal.dot(g.direction) + g.normal.dot(ddirection)) * g.direction.dot(g.relative) +
-                               g.normal.dot(g.direction) * (ddirection.dot(g.relative) + g.direction.dot(drelative)));
+    opening -= g.opening.by_across *
+               ((c.normal.dot(g.direction) + g.normal.dot(ddirection)) * g.direction.dot(g.relative) +
+                g.normal.dot(g.direction) * (ddirection.dot(g.relative) + g.direction.dot(drelative)));
   }
   c.load = g.load[1] * c.gap + g.load[2] * opening;
   c.force = c.load * g.normal + g.state.normal * c.normal;
   if (friction.acts()) {
     // The axes turn with e and n: |u| da = du - a (a.du), du = de - d(n.e) n - (n.e) dn, db = dn x a + n x da.
     const Vector3d dtoward = g.by_wire ? dslope : Vector3d::Zero();
-    const Vector3d du =
-        dtoward - (c.normal.dot(g.toward) + g.normal.dot(dtoward)) * g.normal - g.normal.dot(g.toward) * c.normal;
+    const Vector3d du = dtoward - (c.normal.dot(g.toward) + g.normal.dot(dtoward)) * g.normal -
+                        g.normal.dot(g.toward) * c.normal;
     const Vector3d dalong = (du - g.along.dot(du) * g.along) / g.run;
     const Vector3d dacross = c.normal.cross(g.along) + g.normal.cross(dalong);
-    c.sliding = {dalong.dot(g.relative) + g.along.dot(drelative), dacross.dot(g.relative) + g.across.dot(drelative)};
+    c.sliding = {dalong.dot(g.relative) + g.along.dot(drelative),
+                 dacross.dot(g.relative) + g.across.dot(drelative)};
     c.elastic = g.elastic[1] * c.gap;
     c.elastic_rate = g.elastic[2] * g.gap_rate * c.gap + g.elastic[1] * c.gap_rate;
-    c.friction = g.friction.by_sliding * c.sliding + g.friction.by_normal * c.load + g.friction.by_elastic * c.elastic;
+    c.friction =
+        g.friction.by_sliding * c.sliding + g.friction.by_normal * c.load + g.friction.by_elastic * c.elastic;
     for (std::size_t h = 0; h < 2; ++h)
       c.friction += g.shape_functions[h] * g.of_bristles[h].by_bristle * d.bristles[h];
     c.force -= g.in_world(c.friction) + g.friction.force.x() * dalong + g.friction.force.y() * dacross;

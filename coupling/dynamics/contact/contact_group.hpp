@@ -39,7 +39,8 @@ class ContactGroup final : public Interaction {
   /// Sums over what is closed; gap and place are those of the stretch that presses most, or of the nearest point. y in SI units.
   [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const override;
   [[nodiscard]] std::optional<int> held_states() const override { return touches_.held_states(); }
-  void take_from_mounts(const numerics::VectorView& y, std::vector<Eigen::Vector3d>& mount_forces) const override;
+  void take_from_mounts(const numerics::VectorView& y,
+                        std::vector<Eigen::Vector3d>& mount_forces) const override;
   [[nodiscard]] Observed observe(const numerics::DaePoint& now, double time_before,
                                  const Eigen::VectorXd& before) override;
   [[nodiscard]] bool is_law() const override { return pieces_.front().has_law(); }

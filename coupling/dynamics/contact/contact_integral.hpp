@@ -25,7 +25,8 @@ void for_each_place(const ContactInterval& stretch, const Use& use) {
   const auto lobe = [&](std::size_t k) {  // before crest k
     return k < stretch.crests.size() ? stretch.crests[k].before : stretch.behind;
   };
-  const auto parts = [&](const auto& self, double from, double to, std::size_t first, std::size_t last, double share) {
+  const auto parts = [&](const auto& self, double from, double to, std::size_t first, std::size_t last,
+                         double share) {
     std::size_t top = first;
     for (std::size_t k = first; k < last; ++k) {
       if (stretch.crests[k].gap > stretch.crests[top].gap) top = k;

@@ -43,8 +43,8 @@ class ContactIntervals {
 
   /// Appends the stretches in their order, and the local minima with negative gap.
   template <class Gap>
-  void find(const Gap& gap, const GapPlace& begin, const GapPlace& end, std::vector<ContactInterval>& stretches,
-            std::vector<GapPlace>& minima) const {
+  void find(const Gap& gap, const GapPlace& begin, const GapPlace& end,
+            std::vector<ContactInterval>& stretches, std::vector<GapPlace>& minima) const {
     if (std::isfinite(way_)) divide(gap, begin, end, {stretches, minima});
   }
 

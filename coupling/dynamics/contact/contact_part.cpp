@@ -41,7 +41,8 @@ ContactPart::ContactPart(const MotionContact& contact, std::shared_ptr<const Con
   if (contact_.foundation.modulus == 0.0)
     contact_.foundation.modulus = default_modulus(p.axial_stiffness, p.bending_stiffness, diameter);
   // A mount: EA over the length that gives way; friction by the smooth law with the one coefficient of sliding.
-  mount_length_ = mount_length(p.axial_stiffness, p.bending_stiffness, diameter, search_.shape().smallest_radius());
+  mount_length_ =
+      mount_length(p.axial_stiffness, p.bending_stiffness, diameter, search_.shape().smallest_radius());
   mount_weight_ = p.axial_stiffness / (mount_length_ * contact_.foundation.modulus);
   at_mount_ = contact_;
   at_mount_.friction = MotionFriction{.static_coefficient = contact_.friction.dynamic_coefficient,
@@ -85,7 +86,8 @@ bool ContactPart::outgrows_pattern(const DaePoint& at) {
   for (const int e : search_.candidates()) wanted[base::at(e)] = coupled_[base::at(e)];
   const int last = search_.curve().elements() - 1;
   for (const QuadraturePoint& n : found.nodes) {
-    for (int k = std::max(0, n.element - coupled_beside); k <= std::min(last, n.element + coupled_beside); ++k)
+    for (int k = std::max(0, n.element - coupled_beside); k <= std::min(last, n.element + coupled_beside);
+         ++k)
       wanted[base::at(k)] = true;
   }
   coupled_ = std::move(wanted);
@@ -214,7 +216,8 @@ void ContactPart::find(const VectorView& y, ContactCache& found) const {
       }
       continue;
     }
-    for (std::size_t k = before; k < found.stretches.size(); ++k) add_stretch(e, found.stretches[k], k, found.nodes);
+    for (std::size_t k = before; k < found.stretches.size(); ++k)
+      add_stretch(e, found.stretches[k], k, found.nodes);
   }
 }
 
@@ -231,7 +234,8 @@ ContactGeometry ContactPart::geometry(const QuadraturePoint& n, const VectorView
   }
   BristlesBeside beside;
   beside.shape_functions = n.shape_functions;
-  for (int h = 0; has_bristle() && h < 2; ++h) beside.bristles[base::at(h)] = y.segment<2>(bristle_of(n.element + h));
+  for (int h = 0; has_bristle() && h < 2; ++h)
+    beside.bristles[base::at(h)] = y.segment<2>(bristle_of(n.element + h));
   const MotionContact& contact = n.place == ContactPlace::mount ? at_mount_ : contact_;
   return contact_geometry(contact, search_.shape(), curve, body_, y, beside, n.place);
 }
@@ -270,7 +274,8 @@ void ContactPart::accept(const DaePoint& at) {
 numerics::IterationStart ContactPart::iteration_start(const VectorView& from, const VectorView& to) {
   if (has_law()) return {};
   return accepted_.start(
-      from, to, rod_.tolerances().position, [this](const VectorView& y) -> const ContactCache& { return found_at(y); },
+      from, to, rod_.tolerances().position,
+      [this](const VectorView& y) -> const ContactCache& { return found_at(y); },
       [this](const VectorView& y) { return search_.nearest(y).gap; });
 }
 
@@ -316,7 +321,8 @@ void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& va
   const ContactCache& found = found_at(at.y);
   if (has_bristle()) {
     for (int i = 0; i < rod_.vertices(); ++i) {
-      for (int a = 0; a < 2; ++a) into.add(bristle_of(i) + a, bristle_of(i) + a, c + found.bristles.forgetting(i));
+      for (int a = 0; a < 2; ++a)
+        into.add(bristle_of(i) + a, bristle_of(i) + a, c + found.bristles.forgetting(i));
     }
   }
   // The nodes of an element are behind each other.
@@ -336,8 +342,8 @@ void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& va
 }
 
 // One direction after another: what changes along it in all rows, and from there to the unknowns that it belongs to.
-void ContactPart::add_node_derivatives(const QuadraturePoint& n, const ContactGeometry& g, const BristleMeans& means,
-                                       const VectorView& y) {
+void ContactPart::add_node_derivatives(const QuadraturePoint& n, const ContactGeometry& g,
+                                       const BristleMeans& means, const VectorView& y) {
   const MotionFriction& friction = n.place == ContactPlace::mount ? at_mount_.friction : contact_.friction;
   // A law's minimum follows the tangency n.X' = 0.
   ContactDirection along;
@@ -400,16 +406,16 @@ void ContactPart::add_node_derivatives(const QuadraturePoint& n, const ContactGe
 
 // The ends of a stretch follow the zeros of the gap: d int G z/2 dS = (int of the derivative) - (G z/2) dg/|dg/dS| at each end.
 void ContactPart::add_end_derivatives(int element, double u, const BristleMeans& means, const VectorView& y) {
-  const QuadraturePoint n =
-      node(element, u, foundation_share(search_.curve().begin(element) + u * search_.curve().length(element)));
+  const QuadraturePoint n = node(
+      element, u, foundation_share(search_.curve().begin(element) + u * search_.curve().length(element)));
   const ContactGeometry g = geometry(n, y);
   const double growth = std::max(-contact_.foundation.modulus * g.gap_rate, 0.0),
                steep = std::abs(g.normal.dot(g.slope));
   if (growth == 0.0 || steep < 1e-12) return;
   Eigen::Vector4d by_bristles;  // rows of the bristles by the gap
   for (int h = 0; h < 2; ++h) {
-    const Vector2d flow =
-        0.5 * growth / steep * n.weight * n.shape_functions[base::at(h)] * y.segment<2>(bristle_of(element + h));
+    const Vector2d flow = 0.5 * growth / steep * n.weight * n.shape_functions[base::at(h)] *
+                          y.segment<2>(bristle_of(element + h));
     by_bristles.segment<2>(2 * h) = means.change(element + h, 0.0, flow);
   }
   // dg = n.(dX - dp - phi x r), phi = 4 R Q^T dq.
@@ -418,10 +424,12 @@ void ContactPart::add_end_derivatives(int element, double u, const BristleMeans&
       4.0 * by_turn * g.R_WB * multibody::quaternion_rates(y.segment<4>(body_.quaternion())).transpose();
   for (int a = 0; a < 3; ++a) {
     if (!moves_along(a)) continue;
-    for (int k = 0; k < 4; ++k) derivatives_.col(3 * k + a).tail<4>() += n.value[k] * g.normal[a] * by_bristles;
+    for (int k = 0; k < 4; ++k)
+      derivatives_.col(3 * k + a).tail<4>() += n.value[k] * g.normal[a] * by_bristles;
     derivatives_.col(body_columns + a).tail<4>() -= g.normal[a] * by_bristles;
   }
-  for (int k = 0; k < 4; ++k) derivatives_.col(body_columns + 3 + k).tail<4>() += by_quaternion[k] * by_bristles;
+  for (int k = 0; k < 4; ++k)
+    derivatives_.col(body_columns + 3 + k).tail<4>() += by_quaternion[k] * by_bristles;
 }
 
 void ContactPart::put_derivatives(int element, const numerics::PatternValues& into) const {
@@ -481,7 +489,8 @@ ContactPart::Sums ContactPart::sums(const VectorView& y) const {
     }
   }
   if (!has_bristle()) return s;
-  const BristleMeans::Held held = found.bristles.held(contact_.friction, y.segment(bristle_, 2 * rod_.vertices()));
+  const BristleMeans::Held held =
+      found.bristles.held(contact_.friction, y.segment(bristle_, 2 * rod_.vertices()));
   s.energy += held.energy;
   s.lost_power += held.heat;
   return s;
@@ -522,9 +531,9 @@ std::vector<ContactSample> ContactPart::samples(const VectorView& y) const {
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
     const QuadraturePoint& n = found.nodes[q];
     const ContactGeometry& g = found.geometries[q];
-    const auto owner = has_law()
-                           ? std::find(found.elements.begin(), found.elements.end(), n.element) - found.elements.begin()
-                           : static_cast<std::ptrdiff_t>(n.stretch);
+    const auto owner = has_law() ? std::find(found.elements.begin(), found.elements.end(), n.element) -
+                                       found.elements.begin()
+                                 : static_cast<std::ptrdiff_t>(n.stretch);
     if (of_stretch.empty()) break;
     ContactSample& s = list[of_stretch[std::min(static_cast<std::size_t>(owner), of_stretch.size() - 1)]];
     const double normal = n.weight * g.state.normal;
@@ -535,7 +544,8 @@ std::vector<ContactSample> ContactPart::samples(const VectorView& y) const {
     s.slip_speed += normal * g.state.sliding.norm();
     if (!has_bristle() || n.place == ContactPlace::mount) continue;
     // The slider of what sticks stands still.
-    if (g.of_bristles[n.shape_functions[1] > n.shape_functions[0] ? 1 : 0].slider_speed <= standing) s.sticking = true;
+    if (g.of_bristles[n.shape_functions[1] > n.shape_functions[0] ? 1 : 0].slider_speed <= standing)
+      s.sticking = true;
   }
   std::erase_if(list, [](const ContactSample& s) { return s.normal_force <= 0.0; });
   for (ContactSample& s : list) {

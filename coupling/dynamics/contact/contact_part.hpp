@@ -26,8 +26,8 @@ namespace snare::coupling {
 /// the share of its hat H_i and moves by a mean over the load: see BristleMeans.
 class ContactPart final : public numerics::DaePart {
  public:
-  ContactPart(const MotionContact& contact, std::shared_ptr<const ContactShape> piece, const wire::RodPart& rod,
-              const BodyPart& body);
+  ContactPart(const MotionContact& contact, std::shared_ptr<const ContactShape> piece,
+              const wire::RodPart& rod, const BodyPart& body);
 
   void declare(numerics::DaeLayout& layout) override;
   void sparsity(std::vector<std::pair<int, int>>& entries) const override;
@@ -109,10 +109,10 @@ class ContactPart final : public numerics::DaePart {
   void find(const numerics::VectorView& y, ContactCache& found) const;
   void add_up_bristles(const numerics::VectorView& y, ContactCache& found) const;
   /// State of the bristle of one of the element's two vertices at a node, and its flow there.
-  [[nodiscard]] BristleState bristle_state(const QuadraturePoint& node, std::size_t h, const ContactGeometry& g,
-                                           const numerics::VectorView& y) const;
-  [[nodiscard]] BristleFlow bristle_flow_at(const QuadraturePoint& node, std::size_t h, const ContactGeometry& g,
-                                            const numerics::VectorView& y) const;
+  [[nodiscard]] BristleState bristle_state(const QuadraturePoint& node, std::size_t h,
+                                           const ContactGeometry& g, const numerics::VectorView& y) const;
+  [[nodiscard]] BristleFlow bristle_flow_at(const QuadraturePoint& node, std::size_t h,
+                                            const ContactGeometry& g, const numerics::VectorView& y) const;
   void add_stretch(int element, const ContactInterval& stretch, std::size_t index,
                    std::vector<QuadraturePoint>& nodes) const;
   [[nodiscard]] bool stops(wire::End end) const;
@@ -129,8 +129,8 @@ class ContactPart final : public numerics::DaePart {
                        body_rate_columns = body_columns + BodyPart::coordinates,
                        bristle_columns = body_rate_columns + BodyPart::velocities;
   using DerivativeRows = Eigen::Matrix<double, bristle_rows + 4, 1>;
-  void add_node_derivatives(const QuadraturePoint& node, const ContactGeometry& geometry, const BristleMeans& means,
-                            const numerics::VectorView& y);
+  void add_node_derivatives(const QuadraturePoint& node, const ContactGeometry& geometry,
+                            const BristleMeans& means, const numerics::VectorView& y);
   /// What the bristles feel of the ends of a closed stretch, where p_e vanishes but not its rate.
   void add_end_derivatives(int element, double u, const BristleMeans& means, const numerics::VectorView& y);
   void put_derivatives(int element, const numerics::PatternValues& into) const;
@@ -147,7 +147,7 @@ class ContactPart final : public numerics::DaePart {
   int bristle_ = 0;
   numerics::PatternSlots slots_;
   AcceptedPress accepted_;
-  mutable ContactCache found_;                                                // of the last place that was asked for
+  mutable ContactCache found_;  // of the last place that was asked for
   Eigen::Matrix<double, bristle_rows + 4, bristle_columns + 4> derivatives_;  // workspace
 };
 

@@ -29,8 +29,8 @@ ContactSearch::ContactSearch(const MotionContact& contact, std::shared_ptr<const
   // not cut into more than 64.
   constexpr double share = 0.25, most_pieces = 64.0;
   const double radius = wire_radius_ + shape_->smallest_radius();
-  resolution_ =
-      std::max(share * std::min(radius, std::max(wire_radius_, curve_.shortest())), curve_.shortest() / most_pieces);
+  resolution_ = std::max(share * std::min(radius, std::max(wire_radius_, curve_.shortest())),
+                         curve_.shortest() / most_pieces);
   margin_ = std::max(2.0 * wire_radius_, 0.5 * curve_.longest());
   thickness_ = radius > 0.0 ? radius : curve_.shortest();
   free_until_.assign(base::at(curve_.elements()), 0.0);
@@ -55,8 +55,8 @@ double ContactSearch::lower_bound(const BezierWire::Control& control) const {
 // away may take longer steps.
 void ContactSearch::update(const VectorView& y) {
   const Pose where = X_WS(y);
-  const Vector3d spin = where.R.transpose() *
-                        (multibody::rotation(y.segment<4>(body_.quaternion())) * Vector3d(y.segment<3>(body_.spin())));
+  const Vector3d spin = where.R.transpose() * (multibody::rotation(y.segment<4>(body_.quaternion())) *
+                                               Vector3d(y.segment<3>(body_.spin())));
   const Vector3d origin_speed = where.R.transpose() * y.segment<3>(body_.velocity()) -
                                 spin.cross(where.R.transpose() * (y.segment<3>(body_.position()) - where.p));
   const bool first = last_.cols() == 0;

@@ -22,8 +22,8 @@ struct NearestPoint {
 ///                                                                                  theory.md (G.6), (G.8)
 class ContactSearch {
  public:
-  ContactSearch(const MotionContact& contact, std::shared_ptr<const ContactShape> shape, const wire::RodPart& rod,
-                const BodyPart& body);
+  ContactSearch(const MotionContact& contact, std::shared_ptr<const ContactShape> shape,
+                const wire::RodPart& rod, const BodyPart& body);
 
   /// The wire's curve, element by element.
   [[nodiscard]] const BezierWire& curve() const { return curve_; }

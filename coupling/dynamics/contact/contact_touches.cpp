@@ -39,13 +39,14 @@ ContactSample with_force(ContactSample sample, const Eigen::Vector3d& force, dou
 
 int ContactTouches::free_point() const {
   int point = 0;
-  while (std::any_of(touching_.begin(), touching_.end(), [point](const Touching& t) { return t.point == point; }))
+  while (std::any_of(touching_.begin(), touching_.end(),
+                     [point](const Touching& t) { return t.point == point; }))
     ++point;
   return point;
 }
 
-std::vector<MotionEvent> ContactTouches::observe(const ContactSample& sample, const Seen& now, const Seen& before,
-                                                 const GapAt& gap_at) {
+std::vector<MotionEvent> ContactTouches::observe(const ContactSample& sample, const Seen& now,
+                                                 const Seen& before, const GapAt& gap_at) {
   std::vector<MotionEvent> events;
   std::vector<Touching> old = std::exchange(touching_, {});
   std::vector<const ContactSample*> fresh;

@@ -31,8 +31,8 @@ class ContactTouches {
   ContactTouches(double reach, bool sticks) : reach_(reach), sticks_(sticks) {}
 
   /// What has happened since the last state told: `contact` of the events is left at 0. The sample is that of `now`.
-  [[nodiscard]] std::vector<MotionEvent> observe(const ContactSample& sample, const Seen& now, const Seen& before,
-                                                 const GapAt& gap_at);
+  [[nodiscard]] std::vector<MotionEvent> observe(const ContactSample& sample, const Seen& now,
+                                                 const Seen& before, const GapAt& gap_at);
   /// How many of the states told last have touched without a break.
   [[nodiscard]] int held_states() const { return held_states_; }
   /// What is known of the last state: see DaePart. Material coordinates [m] and what sticks.

@@ -28,7 +28,9 @@ struct FrameMotion {
   /// Place in the world of a point fixed in the frame [m].
   [[nodiscard]] Vector3<S> point(const Eigen::Vector3d& p_FP) const { return p + R * p_FP.cast<S>(); }
   /// Velocity there of the frame's material [m/s].
-  [[nodiscard]] Vector3<S> velocity_at(const Vector3<S>& p_WP) const { return linear + angular.cross(p_WP - p); }
+  [[nodiscard]] Vector3<S> velocity_at(const Vector3<S>& p_WP) const {
+    return linear + angular.cross(p_WP - p);
+  }
 };
 
 /// Moment about the frame's origin and force on it.
@@ -85,7 +87,8 @@ template <class Variables, int Inner = 0, std::size_t K>
   for (std::size_t k = 0; k < K; ++k) {
     const auto variables = [&](const Eigen::Vector3d& value, typename Variables::Kind kind) {
       Vector3<S> v = value.cast<S>();
-      for (int i = 0; Variables::has(k, kind) && i < 3; ++i) v[i] = S(value[i], Variables::first(k, kind) + i);
+      for (int i = 0; Variables::has(k, kind) && i < 3; ++i)
+        v[i] = S(value[i], Variables::first(k, kind) + i);
       return v;
     };
     dual[k].R = now[k].R.template cast<S>();
@@ -121,7 +124,8 @@ void add_derivatives(const Vector3<S>& vector, Eigen::Index row, Eigen::MatrixXd
         if (!Variables::has(k, kind)) continue;
         const Eigen::RowVector3d by = vector[i].v.template segment<3>(Variables::first(k, kind)).transpose();
         D.block<1, 3>(row, 12 * static_cast<Eigen::Index>(k) + 3 * kind) += by;
-        if (kind == Variables::shift || kind == Variables::velocity) D.block<1, 3>(row, 12 * last + 3 * kind) -= by;
+        if (kind == Variables::shift || kind == Variables::velocity)
+          D.block<1, 3>(row, 12 * last + 3 * kind) -= by;
       }
     }
   }
@@ -142,7 +146,8 @@ void add_derivatives(const std::array<FrameWrench<S>, K>& wrenches, Eigen::Matri
 /// Their derivatives: D of FrameForces, (6 K, 12 K), in SI units.
 template <class Variables, class S, std::size_t K>
 [[nodiscard]] Eigen::MatrixXd derivatives_of(const std::array<FrameWrench<S>, K>& wrenches) {
-  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(K), 12 * static_cast<Eigen::Index>(K));
+  Eigen::MatrixXd D =
+      Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(K), 12 * static_cast<Eigen::Index>(K));
   add_derivatives<Variables>(wrenches, D);
   return D;
 }
@@ -167,7 +172,8 @@ template <int N>
 }
 
 /// f(x, y) by its value and slopes there. In their units; by_x, by_y: df/dx, df/dy.
-[[nodiscard]] inline double lifted(double value, double /*by_x*/, double /*x*/, double /*by_y*/, double /*y*/) {
+[[nodiscard]] inline double lifted(double value, double /*by_x*/, double /*x*/, double /*by_y*/,
+                                   double /*y*/) {
   return value;
 }
 template <int N>
@@ -205,9 +211,11 @@ template <int N, class Change>
                                       const Change& change) {
   Vector3<Dual<N>> f = value.cast<Dual<N>>();
   for (int k = 0; k < N; ++k) {
-    const auto slopes = [k](const Vector3<Dual<N>>& x) { return Eigen::Vector3d(x[0].v[k], x[1].v[k], x[2].v[k]); };
-    const Eigen::Vector3d by = change(BristleChangeIn<3>{slopes(in.bristle), slopes(in.sliding), in.normal.v[k],
-                                                         in.elastic.v[k], in.elastic_rate.v[k]});
+    const auto slopes = [k](const Vector3<Dual<N>>& x) {
+      return Eigen::Vector3d(x[0].v[k], x[1].v[k], x[2].v[k]);
+    };
+    const Eigen::Vector3d by = change(BristleChangeIn<3>{
+        slopes(in.bristle), slopes(in.sliding), in.normal.v[k], in.elastic.v[k], in.elastic_rate.v[k]});
     for (int i = 0; i < 3; ++i) f[i].v[k] = by[i];
   }
   return f;
@@ -215,7 +223,8 @@ template <int N, class Change>
 
 /// Smooth friction [N] of what slides with w [m/s] across a unit normal under a normal force [N]: against w.  theory.md (M.9)
 template <class S>
-[[nodiscard]] Vector3<S> smooth_friction(const MotionFriction& friction, const Vector3<S>& w, const S& normal) {
+[[nodiscard]] Vector3<S> smooth_friction(const MotionFriction& friction, const Vector3<S>& w,
+                                         const S& normal) {
   const BristleInputs<S> in{Vector3<S>::Zero(), w, normal, S(0.0), S(0.0)};
   const TangentForceIn<3> f = tangent_force(friction, in.state());
   return -lifted(f.force, in, [&f](const BristleChangeIn<3>& by) { return force_change(f, by); });

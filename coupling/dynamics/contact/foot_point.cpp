@@ -39,9 +39,11 @@ double CubicPieces::way(int element) const {
   return (b.rightCols<3>() - b.leftCols<3>()).colwise().norm().sum();
 }
 
-bool parted(const CubicPieces& own, int element, const CubicPieces& other, int first, int last, double distance) {
+bool parted(const CubicPieces& own, int element, const CubicPieces& other, int first, int last,
+            double distance) {
   const BezierWire::Control& c = own.control(element);
-  const Vector3d n = (c.col(3) - c.col(0)).cross(other.control(last).col(3) - other.control(first).col(0)).normalized();
+  const Vector3d n =
+      (c.col(3) - c.col(0)).cross(other.control(last).col(3) - other.control(first).col(0)).normalized();
   const Eigen::Vector4d of_own = c.transpose() * n;
   Eigen::Vector4d low = other.control(first).transpose() * n, high = low;
   for (int e = first + 1; e <= last; ++e) {
@@ -95,7 +97,8 @@ FootPoint foot_point(const CubicPieces& pieces, int first, int last, const Vecto
       here = rise(e, 0.0);
       const double next = rise(e, 1.0);
       if (next > 0.0)
-        return here < 0.0 ? FootPoint{e, foot_within(pieces, e, p, here, next), false} : FootPoint{e, 0.0, false};
+        return here < 0.0 ? FootPoint{e, foot_within(pieces, e, p, here, next), false}
+                          : FootPoint{e, 0.0, false};
     }
     return {last, 1.0, true};
   }
@@ -103,7 +106,8 @@ FootPoint foot_point(const CubicPieces& pieces, int first, int last, const Vecto
     const double next = rise(e, 0.0);
     here = rise(e, 1.0);
     if (next <= 0.0)
-      return next < 0.0 ? FootPoint{e, foot_within(pieces, e, p, next, here), false} : FootPoint{e, 0.0, false};
+      return next < 0.0 ? FootPoint{e, foot_within(pieces, e, p, next, here), false}
+                        : FootPoint{e, 0.0, false};
   }
   return {first, 0.0, true};
 }

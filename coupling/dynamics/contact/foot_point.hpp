@@ -13,7 +13,8 @@ namespace snare::coupling {
 class CubicPieces {
  public:
   CubicPieces() = default;
-  explicit CubicPieces(int elements) : pieces_(static_cast<std::size_t>(elements)), controls_(pieces_.size()) {}
+  explicit CubicPieces(int elements)
+      : pieces_(static_cast<std::size_t>(elements)), controls_(pieces_.size()) {}
   /// Of one element, by its control points.
   void set(int element, const BezierWire::Control& control);
 
@@ -46,8 +47,9 @@ class CubicPieces {
 /// The point of a wire that is nearest to a given one.
 struct FootPoint {
   int element = 0;
-  double u = 0.0;       ///< along the element, from 0 to 1 [-]
-  bool stands = false;  ///< an end of the wire or of the elements that were looked through: (X - p).X' is not zero
+  double u = 0.0;  ///< along the element, from 0 to 1 [-]
+  bool stands =
+      false;  ///< an end of the wire or of the elements that were looked through: (X - p).X' is not zero
 };
 /// The local minimum of the distance to p [m] that is downhill of the nearest of the vertices of elements first ... last.   theory.md (G.12)
 [[nodiscard]] FootPoint foot_point(const CubicPieces& pieces, int first, int last, const Eigen::Vector3d& p);

@@ -24,7 +24,8 @@ constexpr Eigen::Index dissipated = 0;
 constexpr Eigen::Index work = 1;
 constexpr Eigen::Index outer = 2;
 constexpr Eigen::Index outer_moment = 5;
-constexpr Eigen::Index laws = 8;  ///< what laws between bodies and in place of wires lose, no part of `dissipated`
+constexpr Eigen::Index laws =
+    8;  ///< what laws between bodies and in place of wires lose, no part of `dissipated`
 constexpr Eigen::Index contacts = 9;
 }  // namespace integral
 
@@ -104,8 +105,8 @@ class Interaction {
   /// Whether its force jumps there, so that the integration begins anew.
   [[nodiscard]] virtual bool jumps() const { return true; }
   /// What the step to `now` has shown beside the integrator's event, if there was one. Their `contact` is 0.
-  [[nodiscard]] virtual std::vector<MotionEvent> changes(const numerics::DaePoint& /*now*/, double /*time_before*/,
-                                                         bool /*event*/) {
+  [[nodiscard]] virtual std::vector<MotionEvent> changes(const numerics::DaePoint& /*now*/,
+                                                         double /*time_before*/, bool /*event*/) {
     return {};
   }
 

@@ -23,7 +23,8 @@ class UnilateralForcePart : public FrameForces, public Interaction {
   [[nodiscard]] virtual double touches(const numerics::VectorView& y) const { return depth(y); }
   /// What can be said of it at one place, from y in SI units.
   struct Pressing {
-    ContactSample sample;  ///< but for the gap; its force is that on the first of those that press on each other
+    ContactSample
+        sample;  ///< but for the gap; its force is that on the first of those that press on each other
     Work work;
     double tension = 0.0;  ///< of a wire [N]
   };

@@ -16,7 +16,8 @@ Vector3d turn_of(const PairSide::Edge& e) {
 // d(e x e'/|e|^2) = (de x e' + e x de')/|e|^2 - 2 (e.de)/|e|^2 (e x e')/|e|^2.
 Vector3d turn_change(const PairSide::Edge& e, const Vector3d& edge, const Vector3d& rate) {
   const double square = e.edge.squaredNorm();
-  return (edge.cross(e.rate) + e.edge.cross(rate) - 2.0 * e.edge.dot(edge) / square * e.edge.cross(e.rate)) / square;
+  return (edge.cross(e.rate) + e.edge.cross(rate) - 2.0 * e.edge.dot(edge) / square * e.edge.cross(e.rate)) /
+         square;
 }
 
 }  // namespace
@@ -81,7 +82,8 @@ PairChange pair_change(const MotionFriction& friction, const PairGeometry& g, co
   const PairSide &a = g.sides[0], &b = g.sides[1];
   const Vector3d shift = d.sides[0].x - d.sides[1].x;
   if (!g.stands) {
-    c.zeta = (shift.dot(b.slope) + g.apart.dot(d.sides[1].slope)) / (b.slope.squaredNorm() - g.apart.dot(b.bend));
+    c.zeta =
+        (shift.dot(b.slope) + g.apart.dot(d.sides[1].slope)) / (b.slope.squaredNorm() - g.apart.dot(b.bend));
   }
   const Vector3d dapart = shift - b.slope * c.zeta;
   const double dgap = g.normal.dot(dapart);
@@ -90,10 +92,11 @@ PairChange pair_change(const MotionFriction& friction, const PairGeometry& g, co
   const double dgap_rate = dnormal.dot(g.relative) + g.normal.dot(drelative);
   double dopening = (g.opening.by_gap + g.opening.by_across) * dgap_rate;
   if (g.opening.by_across != 0.0) {
-    const Vector3d ddirection = (d.sides[0].slope - g.direction.dot(d.sides[0].slope) * g.direction) / a.slope.norm();
-    dopening -=
-        g.opening.by_across * ((dnormal.dot(g.direction) + g.normal.dot(ddirection)) * g.direction.dot(g.relative) +
-                               g.normal.dot(g.direction) * (ddirection.dot(g.relative) + g.direction.dot(drelative)));
+    const Vector3d ddirection =
+        (d.sides[0].slope - g.direction.dot(d.sides[0].slope) * g.direction) / a.slope.norm();
+    dopening -= g.opening.by_across *
+                ((dnormal.dot(g.direction) + g.normal.dot(ddirection)) * g.direction.dot(g.relative) +
+                 g.normal.dot(g.direction) * (ddirection.dot(g.relative) + g.direction.dot(drelative)));
   }
   c.load = g.load[1] * dgap + g.load[2] * dopening;
   c.elastic = g.elastic[1] * dgap;
@@ -117,11 +120,14 @@ PairChange pair_change(const MotionFriction& friction, const PairGeometry& g, co
       dslope - (dnormal.dot(a.slope) + g.normal.dot(dslope)) * g.normal - g.normal.dot(a.slope) * dnormal;
   const Vector3d dalong = (du - g.along.dot(du) * g.along) / g.run;
   const Vector3d dacross = dnormal.cross(g.along) + g.normal.cross(dalong);
-  c.sliding = {dalong.dot(g.sliding) + g.along.dot(dsliding), dacross.dot(g.sliding) + g.across.dot(dsliding)};
+  c.sliding = {dalong.dot(g.sliding) + g.along.dot(dsliding),
+               dacross.dot(g.sliding) + g.across.dot(dsliding)};
   Vector2d dfriction =
       g.friction.by_sliding * c.sliding + g.friction.by_normal * c.load + g.friction.by_elastic * c.elastic;
-  for (std::size_t h = 0; h < 2; ++h) dfriction += g.shape_functions[h] * g.of_bristles[h].by_bristle * d.bristles[h];
-  const Vector3d don_other = g.in_world(dfriction) + g.friction.force.x() * dalong + g.friction.force.y() * dacross;
+  for (std::size_t h = 0; h < 2; ++h)
+    dfriction += g.shape_functions[h] * g.of_bristles[h].by_bristle * d.bristles[h];
+  const Vector3d don_other =
+      g.in_world(dfriction) + g.friction.force.x() * dalong + g.friction.force.y() * dacross;
   c.force -= don_other;
   c.moment = dapart.cross(g.in_world(g.friction.force)) + g.apart.cross(don_other);
   return c;

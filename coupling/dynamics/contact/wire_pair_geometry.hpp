@@ -38,17 +38,17 @@ struct PairSide {
 /// do: so the section of A bears the moment s_A M, that of B s_B M, M = r x (friction on B). Its part about the wire's own axis is
 /// taken as held: wires neither roll on each other nor are twisted by each other.
 struct PairGeometry {
-  std::array<PairSide, 2> sides;                                                      ///< A, B
-  std::array<double, 2> shares{0.5, 0.5};                                             ///< s_A, s_B
-  bool stands = false;                                                                ///< B's point is an end of B
-  Eigen::Vector3d apart = Eigen::Vector3d::Zero();                                    ///< r [m]
-  double distance = 0.0;                                                              ///< D [m]
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();                                   ///< n
-  double gap = 0.0, gap_rate = 0.0;                                                   ///< g [m], dg/dt [m/s]
-  Eigen::Vector3d relative = Eigen::Vector3d::Zero();                                 ///< v_A - v_B [m/s]
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();                                ///< t
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();                                     ///< Omega [rad/s]
-  Eigen::Vector3d sliding = Eigen::Vector3d::Zero();                                  ///< w, of the surfaces [m/s]
+  std::array<PairSide, 2> sides;                        ///< A, B
+  std::array<double, 2> shares{0.5, 0.5};               ///< s_A, s_B
+  bool stands = false;                                  ///< B's point is an end of B
+  Eigen::Vector3d apart = Eigen::Vector3d::Zero();      ///< r [m]
+  double distance = 0.0;                                ///< D [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();     ///< n
+  double gap = 0.0, gap_rate = 0.0;                     ///< g [m], dg/dt [m/s]
+  Eigen::Vector3d relative = Eigen::Vector3d::Zero();   ///< v_A - v_B [m/s]
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< t
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();       ///< Omega [rad/s]
+  Eigen::Vector3d sliding = Eigen::Vector3d::Zero();    ///< w, of the surfaces [m/s]
   Eigen::Vector3d along = Eigen::Vector3d::Zero(), across = Eigen::Vector3d::Zero();  ///< a, b
   double run = 0.0;                                                                   ///< |u|
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< p [N/m], and its derivatives by g and o
@@ -81,8 +81,10 @@ struct PairDirection {
     Eigen::Vector3d x = Eigen::Vector3d::Zero();      ///< of X
     Eigen::Vector3d slope = Eigen::Vector3d::Zero();  ///< of X'
     Eigen::Vector3d v = Eigen::Vector3d::Zero();      ///< of sum N v
-    std::array<Eigen::Vector3d, 3> edge{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-    std::array<Eigen::Vector3d, 3> rate{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    std::array<Eigen::Vector3d, 3> edge{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                        Eigen::Vector3d::Zero()};
+    std::array<Eigen::Vector3d, 3> rate{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                        Eigen::Vector3d::Zero()};
   };
   std::array<Side, 2> sides;
   std::array<Eigen::Vector2d, 2> bristles{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
@@ -98,13 +100,15 @@ struct PairChange {
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< of M
 };
 /// How load, force and moment change along `d` at the place `g`, B's point following: the first derivative of pair_geometry, linear in d.
-[[nodiscard]] PairChange pair_change(const MotionFriction& friction, const PairGeometry& g, const PairDirection& d);
+[[nodiscard]] PairChange pair_change(const MotionFriction& friction, const PairGeometry& g,
+                                     const PairDirection& d);
 
 /// What a moment m [N m] on an edge e [m] is as forces [N] on its vertices, but for its part about the edge: (m x e)/|e|^2 on the second,
 /// the opposite on the first.
 [[nodiscard]] Eigen::Vector3d couple_on(const Eigen::Vector3d& edge, const Eigen::Vector3d& moment);
 /// Its change with that of the edge and of the moment [N].
 [[nodiscard]] Eigen::Vector3d couple_change(const Eigen::Vector3d& edge, const Eigen::Vector3d& moment,
-                                            const Eigen::Vector3d& edge_change, const Eigen::Vector3d& moment_change);
+                                            const Eigen::Vector3d& edge_change,
+                                            const Eigen::Vector3d& moment_change);
 
 }  // namespace snare::coupling

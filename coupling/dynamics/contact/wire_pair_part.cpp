@@ -77,7 +77,9 @@ bool WirePairPart::outgrows_pattern(const DaePoint& at) {
     const int own = n.places[0].element, other = n.places[1].element;
     return n.own == 0 ? std::pair(own, other) : std::pair(other, own);
   };
-  const auto known = [&](const QuadraturePoint& n) { return std::ranges::binary_search(coupled_, elements(n)); };
+  const auto known = [&](const QuadraturePoint& n) {
+    return std::ranges::binary_search(coupled_, elements(n));
+  };
   if (std::ranges::all_of(found.nodes, known)) return false;
   std::vector<std::pair<int, int>> wanted;
   std::ranges::set_intersection(coupled_, search_.candidates(), std::back_inserter(wanted));
@@ -117,7 +119,8 @@ void WirePairPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   for (const auto& [row_vertex, column_vertex] : vertices) {
-    const std::size_t wr = row_vertex < rods_[0]->vertices() ? 0 : 1, wc = column_vertex < rods_[0]->vertices() ? 0 : 1;
+    const std::size_t wr = row_vertex < rods_[0]->vertices() ? 0 : 1,
+                      wc = column_vertex < rods_[0]->vertices() ? 0 : 1;
     const int i = row_vertex - (wr == 0 ? 0 : rods_[0]->vertices());
     const int j = column_vertex - (wc == 0 ? 0 : rods_[0]->vertices());
     std::vector<int> rows, columns;
@@ -135,7 +138,8 @@ void WirePairPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
     }
   }
   for (std::size_t w = 0; has_bristle() && w < 2; ++w) {
-    for (int k = 0; k < 2 * rods_[w]->vertices(); ++k) entries.emplace_back(bristles_[w] + k, bristles_[w] + k);
+    for (int k = 0; k < 2 * rods_[w]->vertices(); ++k)
+      entries.emplace_back(bristles_[w] + k, bristles_[w] + k);
   }
 }
 
@@ -193,7 +197,8 @@ void WirePairPart::find_along(std::size_t own, const NearElements& near, Contact
     const Vector3d tangent = across.slope(foot.element, foot.u);
     const double over = slope.dot(tangent) / tangent.squaredNorm();
     const double towards = apart.dot(across.bend(foot.element, foot.u)) / distance;
-    return GapPlace{u, distance - thickness, apart.dot(slope) / distance, std::max(0.0, towards * over * over)};
+    return GapPlace{u, distance - thickness, apart.dot(slope) / distance,
+                    std::max(0.0, towards * over * over)};
   };
   found.closed.clear();
   found.minima.clear();
@@ -260,7 +265,8 @@ BristleFlow WirePairPart::bristle_flow_at(const QuadraturePoint& n, std::size_t 
   return bristle_flow(pair_.friction, bristle_state(n, h, g, y), g.of_bristles[h], g.elastic_rate());
 }
 
-WirePairPart::NodalLoad WirePairPart::nodal_load(const QuadraturePoint& n, const PairGeometry& g, std::size_t s) const {
+WirePairPart::NodalLoad WirePairPart::nodal_load(const QuadraturePoint& n, const PairGeometry& g,
+                                                 std::size_t s) const {
   const QuadraturePoint::Place& p = n.places[s];
   const Vector3d force = (s == 0 ? n.weight : -n.weight) * g.force;
   NodalLoad load;
@@ -303,7 +309,8 @@ numerics::IterationStart WirePairPart::iteration_start(const VectorView& from, c
 }
 
 void WirePairPart::add_up_bristles(const VectorView& y, ContactCache& found) const {
-  for (std::size_t w = 0; w < 2; ++w) found.bristles[w].begin(y.segment(bristles_[w], 2 * rods_[w]->vertices()));
+  for (std::size_t w = 0; w < 2; ++w)
+    found.bristles[w].begin(y.segment(bristles_[w], 2 * rods_[w]->vertices()));
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
     const QuadraturePoint& n = found.nodes[q];
     const PairGeometry& g = found.geometries[q];
@@ -335,7 +342,8 @@ void WirePairPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows
   if (!has_bristle()) return;
   for (std::size_t w = 0; w < 2; ++w) {
     const int count = 2 * rods_[w]->vertices();
-    rows.segment(bristles_[w], count) += at.rate.segment(bristles_[w], count) - found.bristles[w].rates.reshaped();
+    rows.segment(bristles_[w], count) +=
+        at.rate.segment(bristles_[w], count) - found.bristles[w].rates.reshaped();
   }
 }
 
@@ -380,8 +388,9 @@ void WirePairPart::add_column(const QuadraturePoint& n, const PairGeometry& g, c
     for (std::size_t j = 0; pair_.friction.acts() && j < 3; ++j) {
       if (p.share[j] == 0.0) continue;
       const double share = n.weight * g.shares[s];
-      const Vector3d couple = couple_change(g.sides[s].edges[j].edge, share * p.share[j] * g.moment, d.sides[s].edge[j],
-                                            share * (p.share[j] * c.moment + p.share_slope[j] * zeta * g.moment));
+      const Vector3d couple =
+          couple_change(g.sides[s].edges[j].edge, share * p.share[j] * g.moment, d.sides[s].edge[j],
+                        share * (p.share[j] * c.moment + p.share_slope[j] * zeta * g.moment));
       const auto first = row + 3 * static_cast<Eigen::Index>(j);
       column.segment<3>(first) += couple;
       column.segment<3>(first + 3) -= couple;
@@ -445,7 +454,8 @@ void WirePairPart::add_end_jacobian(const QuadraturePoint& n, const VectorView& 
       const Vector3d normal = s == 0 ? g.normal : Vector3d(-g.normal);
       for (int k = 0; k < 4; ++k) {
         const Eigen::Index column = columns_of_place * static_cast<Eigen::Index>(s) + 3 * k;
-        block.block<2, 3>(row_of_bristle + 2 * h, column) += n.places[s].value[k] * by_gap * normal.transpose();
+        block.block<2, 3>(row_of_bristle + 2 * h, column) +=
+            n.places[s].value[k] * by_gap * normal.transpose();
       }
     }
   }

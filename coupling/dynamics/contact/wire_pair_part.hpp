@@ -83,7 +83,8 @@ class WirePairPart final : public numerics::DaePart, public Interaction {
   /// points. Its points: the closed stretches along the first wire. y in SI units.
   [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const override;
   [[nodiscard]] std::optional<int> held_states() const override { return touches_.held_states(); }
-  void take_from_mounts(const numerics::VectorView& y, std::vector<Eigen::Vector3d>& mount_forces) const override;
+  void take_from_mounts(const numerics::VectorView& y,
+                        std::vector<Eigen::Vector3d>& mount_forces) const override;
   [[nodiscard]] Observed observe(const numerics::DaePoint& now, double time_before,
                                  const Eigen::VectorXd& before) override;
   [[nodiscard]] bool is_law() const override { return false; }
@@ -102,7 +103,8 @@ class WirePairPart final : public numerics::DaePart, public Interaction {
       double u = 0.0;
       int first = 0;  // of the four vertices
       Eigen::Vector4d value, slope, bend;
-      std::array<double, 3> share{}, share_slope{};  // of the edges between the four vertices in the section's turn
+      std::array<double, 3> share{},
+          share_slope{};  // of the edges between the four vertices in the section's turn
     };
     std::array<Place, 2> places;              // on its own wire, on the other
     std::array<double, 2> shape_functions{};  // of the vertices of its own element
@@ -160,7 +162,8 @@ class WirePairPart final : public numerics::DaePart, public Interaction {
                          LocalBlock& block) const;
   /// What the bristles feel of the end of a closed stretch, where p_e vanishes but not its rate: see ContactPart.
   void add_end_jacobian(const QuadraturePoint& end, const numerics::VectorView& y, LocalBlock& block) const;
-  void add_block(const QuadraturePoint& node, const LocalBlock& block, const numerics::PatternValues& into) const;
+  void add_block(const QuadraturePoint& node, const LocalBlock& block,
+                 const numerics::PatternValues& into) const;
 
   WirePair pair_;
   std::array<const wire::RodPart*, 2> rods_;

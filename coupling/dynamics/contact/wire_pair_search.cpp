@@ -31,7 +31,8 @@ WirePairSearch::WirePairSearch(const WirePair& pair, const wire::RodPart& a, con
   margin_ = thickness_;
   for (std::size_t w = 0; w < 2; ++w) {
     const double shortest = curves_[w].shortest();
-    resolutions_[w] = std::max(share * std::min(thickness_, std::max(pair.radii[w], shortest)), shortest / most_pieces);
+    resolutions_[w] =
+        std::max(share * std::min(thickness_, std::max(pair.radii[w], shortest)), shortest / most_pieces);
     weight_sum_ = std::max(weight_sum_, curves_[w].largest_weight_sum());
     boxes_[w] = ElementBoxes(curves_[w].elements());
     speeds_[w].resize(rods_[w]->vertices());
@@ -51,7 +52,8 @@ void WirePairSearch::update(const VectorView& y) {
   const auto each = [&](const auto& use) {
     for (std::size_t w = 0; w < 2; ++w) {
       for (int i = 0; i < rods_[w]->vertices(); ++i)
-        use(w, i, Vector3d(y.segment<3>(rods_[w]->position_of(i))), Vector3d(y.segment<3>(rods_[w]->velocity_of(i))));
+        use(w, i, Vector3d(y.segment<3>(rods_[w]->position_of(i))),
+            Vector3d(y.segment<3>(rods_[w]->velocity_of(i))));
     }
   };
   for (std::size_t w = 0; w < 2 && first; ++w) last_[w] = Eigen::Matrix3Xd::Zero(3, rods_[w]->vertices());
@@ -76,7 +78,8 @@ void WirePairSearch::update(const VectorView& y) {
   turn = solver.solve(turn);
   spin = solver.solve(spin);
   const double angle = turn.norm();
-  const Matrix3d R = angle > 0.0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix3d::Identity();
+  const Matrix3d R =
+      angle > 0.0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix3d::Identity();
   std::array<double, 2> ways{0.0, 0.0};
   each([&](std::size_t w, int i, const Vector3d& x, const Vector3d& v) {
     ways[w] = std::max(ways[w], (x - centre - R * (last_[w].col(i) - before)).norm());
@@ -102,7 +105,8 @@ void WirePairSearch::update(const VectorView& y) {
     near_speed = std::max(near_speed, speeds_[0].segment<4>(curves_[0].first_vertex(a)).maxCoeff() +
                                           speeds_[1].segment<4>(curves_[1].first_vertex(b)).maxCoeff());
   }
-  longest_step_ = 1.0 / (2.0 * weight_sum_ * std::max(speed / (free_until_ - passed_), near_speed / thickness_));
+  longest_step_ =
+      1.0 / (2.0 * weight_sum_ * std::max(speed / (free_until_ - passed_), near_speed / thickness_));
 }
 
 void WirePairSearch::look(std::size_t a, std::size_t b) {
@@ -117,8 +121,8 @@ void WirePairSearch::look(std::size_t a, std::size_t b) {
     clear_ = std::min(clear_, gap);
     return;
   }
-  const bool divide_a =
-      leaf_b || (!leaf_a && boxes_[0].box(a).diagonal().squaredNorm() > boxes_[1].box(b).diagonal().squaredNorm());
+  const bool divide_a = leaf_b || (!leaf_a && boxes_[0].box(a).diagonal().squaredNorm() >
+                                                  boxes_[1].box(b).diagonal().squaredNorm());
   for (std::size_t k = 0; k < 2; ++k)
     look(divide_a ? ElementBoxes::child(a, k) : a, divide_a ? b : ElementBoxes::child(b, k));
 }
@@ -152,8 +156,9 @@ NearestPoints WirePairSearch::nearest(const VectorView& y) const {
 }
 
 // The nearer boxes first; none that cannot hold anything nearer.
-void WirePairSearch::search(const std::array<ElementBoxes, 2>& boxes, const std::array<CubicPieces, 2>& pieces,
-                            std::size_t a, std::size_t b, NearestPoints& best) const {
+void WirePairSearch::search(const std::array<ElementBoxes, 2>& boxes,
+                            const std::array<CubicPieces, 2>& pieces, std::size_t a, std::size_t b,
+                            NearestPoints& best) const {
   const auto bound = [&](std::size_t i, std::size_t j) {
     if (boxes[0].is_empty(i) || boxes[1].is_empty(j)) return infinite;
     return boxes[0].box(i).exteriorDistance(boxes[1].box(j)) - thickness_;
@@ -164,23 +169,27 @@ void WirePairSearch::search(const std::array<ElementBoxes, 2>& boxes, const std:
     search(pieces, boxes[0].element(a), boxes[1].element(b), best);
     return;
   }
-  const bool divide_a =
-      leaf_b || (!leaf_a && boxes[0].box(a).diagonal().squaredNorm() > boxes[1].box(b).diagonal().squaredNorm());
+  const bool divide_a = leaf_b || (!leaf_a && boxes[0].box(a).diagonal().squaredNorm() >
+                                                  boxes[1].box(b).diagonal().squaredNorm());
   std::array<std::pair<std::size_t, std::size_t>, 2> parts;
   for (std::size_t k = 0; k < 2; ++k)
     parts[k] = divide_a ? std::pair(ElementBoxes::child(a, k), b) : std::pair(a, ElementBoxes::child(b, k));
-  if (bound(parts[1].first, parts[1].second) < bound(parts[0].first, parts[0].second)) std::swap(parts[0], parts[1]);
+  if (bound(parts[1].first, parts[1].second) < bound(parts[0].first, parts[0].second))
+    std::swap(parts[0], parts[1]);
   for (const auto& [i, j] : parts) search(boxes, pieces, i, j, best);
 }
 
 // At places that no minimum passes, and between them from the least.
-void WirePairSearch::search(const std::array<CubicPieces, 2>& pieces, int a, int b, NearestPoints& best) const {
+void WirePairSearch::search(const std::array<CubicPieces, 2>& pieces, int a, int b,
+                            NearestPoints& best) const {
   const auto gap = [&](double u) {
     const Vector3d x = pieces[0].value(a, u);
     const FootPoint foot = foot_point(pieces[1], b, b, x);
     const double g = (x - pieces[1].value(b, foot.u)).norm() - thickness_;
     if (g < best.gap) {
-      best = {{curves_[0].begin(a) + u * curves_[0].length(a), curves_[1].begin(b) + foot.u * curves_[1].length(b)}, g};
+      best = {{curves_[0].begin(a) + u * curves_[0].length(a),
+               curves_[1].begin(b) + foot.u * curves_[1].length(b)},
+              g};
     }
     return g;
   };

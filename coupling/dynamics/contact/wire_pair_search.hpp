@@ -53,8 +53,8 @@ class WirePairSearch {
   void place(std::array<ElementBoxes, 2>& boxes, const numerics::VectorView& y) const;
   void look(std::size_t a, std::size_t b);
   void list_runs(std::size_t wire);
-  void search(const std::array<ElementBoxes, 2>& boxes, const std::array<CubicPieces, 2>& pieces, std::size_t a,
-              std::size_t b, NearestPoints& best) const;
+  void search(const std::array<ElementBoxes, 2>& boxes, const std::array<CubicPieces, 2>& pieces,
+              std::size_t a, std::size_t b, NearestPoints& best) const;
   void search(const std::array<CubicPieces, 2>& pieces, int a, int b, NearestPoints& best) const;
 
   double thickness_;  // sum of the radii [m]
@@ -62,10 +62,10 @@ class WirePairSearch {
   std::array<BezierWire, 2> curves_;
   std::array<double, 2> resolutions_{};
   double weight_sum_ = 1.0;
-  double margin_ = 0.0;                    // elements this near are candidates [m]
-  double passed_ = 0.0;                    // way that the wires have gone against each other since the start [m]
-  double free_until_ = 0.0;                // others than the candidates do not touch before this way [m]
-  double clear_ = 0.0;                     // what was free when the boxes were last looked through [m]
+  double margin_ = 0.0;      // elements this near are candidates [m]
+  double passed_ = 0.0;      // way that the wires have gone against each other since the start [m]
+  double free_until_ = 0.0;  // others than the candidates do not touch before this way [m]
+  double clear_ = 0.0;       // what was free when the boxes were last looked through [m]
   std::array<Eigen::Matrix3Xd, 2> last_;   // vertices of the last state [m]
   std::array<Eigen::VectorXd, 2> speeds_;  // of the vertices, less the mean of all [m/s]
   std::array<ElementBoxes, 2> boxes_;

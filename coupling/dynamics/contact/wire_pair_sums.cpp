@@ -107,7 +107,8 @@ ContactSample WirePairPart::closed_sample(const VectorView& y) const {
     s.slip_speed += normal * g.state.sliding.norm();
     if (!has_bristle()) continue;
     // The slider of what sticks stands still.
-    if (g.of_bristles[n.shape_functions[1] > n.shape_functions[0] ? 1 : 0].slider_speed <= standing) s.sticking = true;
+    if (g.of_bristles[n.shape_functions[1] > n.shape_functions[0] ? 1 : 0].slider_speed <= standing)
+      s.sticking = true;
   }
   for (Point& p : points) {
     ContactSample& s = p.sample;
@@ -145,18 +146,18 @@ std::pair<double, double> WirePairPart::gap_at(const VectorView& y, double coord
   n.places = {place(0, element, u), place(1, foot.element, foot.u)};
   WirePair without = pair_;
   without.friction = {};
-  const PairGeometry g =
-      pair_geometry(without, pair_.radii, {side(0, n.places[0], y), side(1, n.places[1], y)}, foot.stands, {});
+  const PairGeometry g = pair_geometry(without, pair_.radii,
+                                       {side(0, n.places[0], y), side(1, n.places[1], y)}, foot.stands, {});
   return {g.gap, g.gap_rate};
 }
 
 std::optional<base::InputProblem> WirePairPart::overlap(const VectorView& y, double tolerance) const {
   const NearestPoints n = search_.nearest(y);
   if (n.gap >= -0.01 * std::min(pair_.radii[0], pair_.radii[1]) - tolerance) return {};
-  return base::InputProblem{
-      "", 0, pair_.name + ".gap",
-      fmt::format("{} at {} m along the one wire and {} m along the other", n.gap, n.coordinates[0], n.coordinates[1]),
-      "must be >= 0 m at the start"};
+  return base::InputProblem{"", 0, pair_.name + ".gap",
+                            fmt::format("{} at {} m along the one wire and {} m along the other", n.gap,
+                                        n.coordinates[0], n.coordinates[1]),
+                            "must be >= 0 m at the start"};
 }
 
 // Both wires are counted: what their contact does to momentum is what it presses on rigidly held components, and what it
@@ -179,16 +180,18 @@ Interaction::Load WirePairPart::load(const numerics::DaePoint& at) const {
 void WirePairPart::take_from_mounts(const VectorView& y, std::vector<Vector3d>& mount_forces) const {
   const Sums s = sums(y);
   for (std::size_t w = 0; w < 2; ++w) {
-    for (std::size_t end = 0; end < 2; ++end) mount_forces[2 * base::at(pair_.wires[w]) + end] -= s.on_mounts[w][end];
+    for (std::size_t end = 0; end < 2; ++end)
+      mount_forces[2 * base::at(pair_.wires[w]) + end] -= s.on_mounts[w][end];
   }
 }
 
 Interaction::Observed WirePairPart::observe(const numerics::DaePoint& now, double time_before,
                                             const Eigen::VectorXd& before) {
   const ContactSample sum = closed_sample(now.y);
-  Observed seen{.normal = sum.normal_force,
-                .events = touches_.observe(sum, {now.time, now.y}, {time_before, before},
-                                           [this](const VectorView& y, double arc) { return gap_at(y, arc); })};
+  Observed seen{
+      .normal = sum.normal_force,
+      .events = touches_.observe(sum, {now.time, now.y}, {time_before, before},
+                                 [this](const VectorView& y, double arc) { return gap_at(y, arc); })};
   for (const ContactSample& s : sum.points) seen.penetration = std::max(seen.penetration, -s.gap);
   return seen;
 }

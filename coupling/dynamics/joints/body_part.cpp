@@ -19,9 +19,15 @@ BodyPart::BodyPart(const MotionBody& body, const Vector3d& gravity, const Motion
 void BodyPart::declare(numerics::DaeLayout& layout) {
   const std::vector<std::string> axes{"x", "y", "z"};
   const std::string& name = body_.name;
-  first_ = layout.add({name + " position", axes, 3, DaeKind::differential, options_.body_position_tolerance, 0, false});
-  layout.add(
-      {name + " quaternion", {"w", "x", "y", "z"}, 4, DaeKind::differential, options_.angle_tolerance, 0, false});
+  first_ = layout.add(
+      {name + " position", axes, 3, DaeKind::differential, options_.body_position_tolerance, 0, false});
+  layout.add({name + " quaternion",
+              {"w", "x", "y", "z"},
+              4,
+              DaeKind::differential,
+              options_.angle_tolerance,
+              0,
+              false});
   layout.add({name + " velocity", axes, 3, DaeKind::differential, options_.body_velocity_tolerance, 0});
   layout.add({name + " angular velocity", axes, 3, DaeKind::differential, options_.spin_tolerance, 0});
   layout.add({name + " length of the quaternion", {}, 1, DaeKind::algebraic, numerics::no_tolerance, 0});
@@ -71,7 +77,8 @@ void BodyPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
   const Matrix3d& inertia = body_.properties.inertia;
   rows.segment<3>(velocity()) +=
       body_.properties.mass * at.rate.segment<3>(velocity()) + body_.linear_drag * v - force_;
-  rows.segment<3>(spin()) += inertia * at.rate.segment<3>(spin()) + w.cross(inertia * w) + body_.angular_drag * w;
+  rows.segment<3>(spin()) +=
+      inertia * at.rate.segment<3>(spin()) + w.cross(inertia * w) + body_.angular_drag * w;
 }
 
 void BodyPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
@@ -88,11 +95,13 @@ void BodyPart::jacobian(const DaePoint& at, double c, std::vector<double>& value
   }
   // q' - Q(q) w - nu q: Q(q) w is bilinear, 1/2 W(w) q as well. |q|^2 - 1.
   Eigen::Matrix4d W;
-  W << 0.0, -w.x(), -w.y(), -w.z(), w.x(), 0.0, w.z(), -w.y(), w.y(), -w.z(), 0.0, w.x(), w.z(), w.y(), -w.x(), 0.0;
+  W << 0.0, -w.x(), -w.y(), -w.z(), w.x(), 0.0, w.z(), -w.y(), w.y(), -w.z(), 0.0, w.x(), w.z(), w.y(),
+      -w.x(), 0.0;
   const Eigen::Matrix<double, 4, 3> Q = multibody::quaternion_rates(q);
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) {
-      add(Local::quaternion + i, Local::quaternion + j, (i == j ? c - at.y[length_multiplier()] : 0.0) - 0.5 * W(i, j));
+      add(Local::quaternion + i, Local::quaternion + j,
+          (i == j ? c - at.y[length_multiplier()] : 0.0) - 0.5 * W(i, j));
     }
     for (int j = 0; j < 3; ++j) add(Local::quaternion + i, Local::spin + j, -Q(i, j));
     add(Local::quaternion + i, Local::length, -q[i]);
@@ -111,7 +120,8 @@ void BodyPart::jacobian(const DaePoint& at, double c, std::vector<double>& value
   for (int i = 0; i < 3; ++i) {
     add(Local::velocity + i, Local::velocity + i, c * body_.properties.mass + body_.linear_drag);
     for (int j = 0; j < 3; ++j) {
-      add(Local::spin + i, Local::spin + j, c * inertia(i, j) + gyro(i, j) + (i == j ? body_.angular_drag : 0.0));
+      add(Local::spin + i, Local::spin + j,
+          c * inertia(i, j) + gyro(i, j) + (i == j ? body_.angular_drag : 0.0));
     }
   }
 }

@@ -26,7 +26,8 @@ struct TurnRate {
     }
     const double half = 0.5 * t, cot = std::cos(half) / std::sin(half);
     c = 1.0 / (t * t) - cot / (2.0 * t);
-    slope = (-2.0 / (t * t * t) + cot / (2.0 * t * t) + 1.0 / (4.0 * t * std::sin(half) * std::sin(half))) / t;
+    slope =
+        (-2.0 / (t * t * t) + cot / (2.0 * t * t) + 1.0 / (4.0 * t * std::sin(half) * std::sin(half))) / t;
   }
 };
 
@@ -73,7 +74,8 @@ struct Relative {
 
 /// A change of a frame's place and motion, in the world.
 struct FrameChange {
-  Vector3d turn = Vector3d::Zero(), shift = Vector3d::Zero(), spin = Vector3d::Zero(), velocity = Vector3d::Zero();
+  Vector3d turn = Vector3d::Zero(), shift = Vector3d::Zero(), spin = Vector3d::Zero(),
+           velocity = Vector3d::Zero();
 };
 
 }  // namespace
@@ -120,11 +122,12 @@ Eigen::MatrixXd BushingPart::derivatives(const VectorView& y) const {
     const Vector3d dd_rate = R.transpose() * (du - a.turn.cross(now.u));
     const Vector3d dphi = turn_rate(now.phi, R.transpose() * (b.turn - a.turn));
     const Vector3d dw = R.transpose() * (b.spin - a.spin - a.turn.cross(now.spin));
-    const Vector3d force = a.turn.cross(s.on_second.force) - R * (c.translational_stiffness.cwiseProduct(dd) +
-                                                                  c.translational_damping.cwiseProduct(dd_rate));
+    const Vector3d force =
+        a.turn.cross(s.on_second.force) -
+        R * (c.translational_stiffness.cwiseProduct(dd) + c.translational_damping.cwiseProduct(dd_rate));
     const Vector3d moment =
-        a.turn.cross(s.on_second.moment) -
-        R * (turn_moment_change(now.phi, c.rotational_stiffness, dphi) + c.rotational_damping.cwiseProduct(dw));
+        a.turn.cross(s.on_second.moment) - R * (turn_moment_change(now.phi, c.rotational_stiffness, dphi) +
+                                                c.rotational_damping.cwiseProduct(dw));
     return std::array<Wrench, 2>{Wrench{-moment - dr.cross(s.on_second.force) - now.r.cross(force), -force},
                                  Wrench{moment, force}};
   };

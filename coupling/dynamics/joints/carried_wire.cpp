@@ -7,7 +7,9 @@ using Eigen::VectorXd;
 
 Vector3d CarriedWire::velocity(int vertex, const VectorXd& y) const {
   const Vector3d x = y.segment<3>(rod->position_of(vertex));
-  const auto rigid = [&x](const MovingFrame::State& s) -> Vector3d { return s.linear + s.angular.cross(x - s.X_WF.p); };
+  const auto rigid = [&x](const MovingFrame::State& s) -> Vector3d {
+    return s.linear + s.angular.cross(x - s.X_WF.p);
+  };
   const double share = rod->coordinate(vertex) / rod->constants().length;
   return (1.0 - share) * rigid(carriers[0]) + share * rigid(carriers[1]);
 }

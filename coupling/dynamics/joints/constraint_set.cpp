@@ -37,8 +37,8 @@ void ConstraintSet::check_carrier(const Motion& motion, const std::string& name,
     c.require(carrier.index >= 0 && carrier.index < static_cast<int>(motion.bodies.size()), name + ".carrier",
               carrier.index, "must be the index of a body");
   } else if (carrier.kind == MotionCarrier::Kind::arm) {
-    if (!c.require(carrier.index >= 0 && carrier.index < static_cast<int>(motion.arms.size()), name + ".carrier",
-                   carrier.index, "must be the index of an arm"))
+    if (!c.require(carrier.index >= 0 && carrier.index < static_cast<int>(motion.arms.size()),
+                   name + ".carrier", carrier.index, "must be the index of an arm"))
       return;
     const auto frames = motion.arms[at_index(carrier.index)].arm.tree.frames().size();
     c.require(carrier.frame >= 0 && at_index(carrier.frame) < frames, name + ".carrier.frame", carrier.frame,
@@ -50,14 +50,16 @@ void ConstraintSet::check(const Motion& motion, Complaints& c) {
   // Arms: sizes, and frames of their loads.
   for (const MotionArm& a : motion.arms) {
     const int n = a.arm.motors();
-    const auto fits = [n](const std::vector<multibody::Drive>& drives) { return static_cast<int>(drives.size()) == n; };
+    const auto fits = [n](const std::vector<multibody::Drive>& drives) {
+      return static_cast<int>(drives.size()) == n;
+    };
     bool fit = fits(a.drives) && a.start.motor.size() == n && a.start.motor_rate.size() == n &&
                a.start.q.size() == a.arm.tree.coordinates() && a.start.v.size() == a.arm.tree.velocities();
     for (const multibody::DriveSwitch& s : a.switches) fit = fit && fits(s.drives) && s.joint < n;
     c.require(fit, a.name + ".joints", n, "must have one drive, angle and rate for each joint");
     for (const multibody::TimedLoad& load : a.loads) {
-      c.require(load.frame >= 0 && at_index(load.frame) < a.arm.tree.frames().size(), a.name + ".loads", load.frame,
-                "must act on a frame of the arm");
+      c.require(load.frame >= 0 && at_index(load.frame) < a.arm.tree.frames().size(), a.name + ".loads",
+                load.frame, "must act on a frame of the arm");
     }
   }
   // Welds: each body on one, and a carrier on an earlier one, so that `place` meets carriers before what they hold.
@@ -95,18 +97,19 @@ void ConstraintSet::check(const Motion& motion, Complaints& c) {
       continue;
     const wire::SpatialRodProperties& p = motion.wires[at_index(m.wire)].rod.properties;
     const wire::SpatialEnd& end = p.end(m.end);
-    c.require(end.kind != wire::SpatialEnd::Kind::free && std::isinf(end.translational_stiffness), m.name + ".wire",
-              m.wire, "must have a rigid mount there");
-    c.require(!motion.wires[at_index(m.wire)].rod.strands.act(), m.name + ".wire", m.wire,
-              "must not be of strands that slide: their moment on a mount that moves or gives is not computed");
+    c.require(end.kind != wire::SpatialEnd::Kind::free && std::isinf(end.translational_stiffness),
+              m.name + ".wire", m.wire, "must have a rigid mount there");
+    c.require(
+        !motion.wires[at_index(m.wire)].rod.strands.act(), m.name + ".wire", m.wire,
+        "must not be of strands that slide: their moment on a mount that moves or gives is not computed");
     const std::size_t k = 2 * at_index(m.wire) + index_of(m.end);
     c.require(!taken[k], m.name + ".wire", m.wire, "must not be held twice at one end");
     taken[k] = true;
   }
 }
 
-ConstraintSet::ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& rods, const std::deque<BodyPart>& bodies,
-                             const MotionOptions& options)
+ConstraintSet::ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& rods,
+                             const std::deque<BodyPart>& bodies, const MotionOptions& options)
     : motion_(motion), end_(options.duration) {
   for (const MotionArm& a : motion.arms) {
     Arm& arm = arms_.emplace_back();
@@ -116,23 +119,26 @@ ConstraintSet::ConstraintSet(const Motion& motion, std::deque<wire::RodPart>& ro
     for (const multibody::TreeBody& b : arm.model.tree.bodies())
       arm.floats = arm.floats && (b.parent >= 0 || b.joint == multibody::JointKind::free);
     // Coordinates and rates are lengths and angles of the links and of a floating base.
-    const multibody::ArmTolerances tolerances{std::min(options.body_position_tolerance, options.angle_tolerance),
-                                              std::min(options.body_velocity_tolerance, options.spin_tolerance), 1e-6,
-                                              false};
+    const multibody::ArmTolerances tolerances{
+        std::min(options.body_position_tolerance, options.angle_tolerance),
+        std::min(options.body_velocity_tolerance, options.spin_tolerance), 1e-6, false};
     arm.part.emplace(arm.model, a.drives, a.loads, tolerances, multibody::BaseEquations::newton_euler);
     arm.stepper.emplace(*arm.part, a.switches);
   }
   for (const MotionWeld& w : motion.welds) {
     const BodyPart& body = bodies[at_index(w.body)];
-    welds_.emplace_back(w.name, frame_of(w.carrier, bodies, pose_of(body.body().start)), body, Pose{}, options);
+    welds_.emplace_back(w.name, frame_of(w.carrier, bodies, pose_of(body.body().start)), body, Pose{},
+                        options);
     held_.push_back(&body);
   }
   for (const MotionMount& m : motion.mounts) {
     const wire::SpatialRodProperties& p = motion.wires[at_index(m.wire)].rod.properties;
-    mounts_.emplace_back(m, frame_of(m.carrier, bodies, mount_pose(p.end(m.end))), rods[at_index(m.wire)], options);
+    mounts_.emplace_back(m, frame_of(m.carrier, bodies, mount_pose(p.end(m.end))), rods[at_index(m.wire)],
+                         options);
   }
   for (const MotionBushing& b : motion.bushings)
-    bushings_.emplace_back(b, frame_of(b.first, bodies, b.X_WF), frame_of(b.second, bodies, b.X_WG.value_or(b.X_WF)));
+    bushings_.emplace_back(b, frame_of(b.first, bodies, b.X_WF),
+                           frame_of(b.second, bodies, b.X_WG.value_or(b.X_WF)));
   for (const WeldPart& w : welds_) constraints_.push_back(&w);
   for (const MountPart& m : mounts_) constraints_.push_back(&m);
 }
@@ -204,7 +210,8 @@ std::vector<CarriedWire> ConstraintSet::carried_wires(const VectorXd& y) const {
     if (motion_.wires[at_index(wire)].velocities.cols() > 0) continue;
     auto found = std::ranges::find(wires, wire, &CarriedWire::wire);
     if (found == wires.end()) found = wires.insert(wires.end(), CarriedWire{&mounts_[k].rod(), wire, {}});
-    const wire::End end = mounts_[k].end(), other = end == wire::End::left ? wire::End::right : wire::End::left;
+    const wire::End end = mounts_[k].end(),
+                    other = end == wire::End::left ? wire::End::right : wire::End::left;
     const MovingFrame::State carrier = mounts_[k].carrier().state(y);
     found->carriers[index_of(end)] = carrier;
     const wire::SpatialEnd& opposite = motion_.wires[at_index(wire)].rod.properties.end(other);
@@ -264,7 +271,8 @@ bool ConstraintSet::process_events(const DaePoint& at, std::span<const int> foun
     const std::vector<int> ended_modes =
         arm.stepper->ended_modes(at, found.empty() ? found : found.subspan(first, count));
     first += count;
-    if (const auto stuck = arm.stepper->crowding(ended_modes, time)) stuck_ = motion_.arms[k].name + ": " + *stuck;
+    if (const auto stuck = arm.stepper->crowding(ended_modes, time))
+      stuck_ = motion_.arms[k].name + ": " + *stuck;
     if (!ended_modes.empty()) {
       arm.part->leave_modes(time, y, ended_modes);
       anew = true;
@@ -279,7 +287,8 @@ bool ConstraintSet::process_events(const DaePoint& at, std::span<const int> foun
   return anew;
 }
 
-void ConstraintSet::change_drive(int arm, int joint, const multibody::Drive& drive, double time, VectorXd& y) {
+void ConstraintSet::change_drive(int arm, int joint, const multibody::Drive& drive, double time,
+                                 VectorXd& y) {
   restore_drive(arm, joint, drive);
   arms_[at_index(arm)].part->stop_ruled_motors(y);
   begin_interval(time);

@@ -56,7 +56,8 @@ class ConstraintSet {
   [[nodiscard]] double limit() const { return limit_; }
   /// After a step: leaves the modes that are over, and changes drives at their times. found: IDA's events of the arms,
   /// empty when it found none. True: the integration must start anew.
-  [[nodiscard]] bool process_events(const numerics::DaePoint& at, std::span<const int> found, Eigen::VectorXd& y);
+  [[nodiscard]] bool process_events(const numerics::DaePoint& at, std::span<const int> found,
+                                    Eigen::VectorXd& y);
   /// A new drive of a joint from a time on. The integration must start anew.
   void change_drive(int arm, int joint, const multibody::Drive& drive, double time, Eigen::VectorXd& y);
   /// The same where the unknowns have taken it in already: behind it `restore_state` must follow.

@@ -26,7 +26,8 @@ void FrameForces::attach_pattern(const numerics::SparseMatrix& pattern) {
   carriers_.clear();
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     const std::vector<int> coordinates = frames_[k].coordinates();
-    const auto same = std::ranges::find_if(carriers_, [&](const Carrier& c) { return c.coordinates == coordinates; });
+    const auto same =
+        std::ranges::find_if(carriers_, [&](const Carrier& c) { return c.coordinates == coordinates; });
     if (same != carriers_.end())
       same->frames.push_back(k);
     else
@@ -59,21 +60,22 @@ void FrameForces::jacobian(const DaePoint& at, double /*c*/, std::vector<double>
       const auto D_k = D.middleCols<motion_columns>(motion_columns * static_cast<Index>(k));
       dW.leftCols(nq).noalias() += D_k.leftCols<6>().lazyProduct(d[k].place);
       dW.leftCols(nq).noalias() += D_k.rightCols<6>().lazyProduct(d[k].motion);
-      if (d[k].jacobian.cols() > 0) dW.rightCols(nv).noalias() += D_k.rightCols<6>().lazyProduct(d[k].jacobian);
+      if (d[k].jacobian.cols() > 0)
+        dW.rightCols(nv).noalias() += D_k.rightCols<6>().lazyProduct(d[k].jacobian);
     }
     for (const Carrier& on : carriers_) {
       if (!on.moves_freely) continue;
       MatrixXd block = MatrixXd::Zero(static_cast<Index>(on.velocities.size()), nq + nv);
       for (const std::size_t i : on.frames) {
-        block.noalias() -=
-            d[i].jacobian.transpose().lazyProduct(dW.middleRows<wrench_rows>(wrench_rows * static_cast<Index>(i)));
+        block.noalias() -= d[i].jacobian.transpose().lazyProduct(
+            dW.middleRows<wrench_rows>(wrench_rows * static_cast<Index>(i)));
         // The Jacobian of the carrier turns with it.
         if (&on == &by) block.leftCols(nq) -= d[i].force(w[i]);
       }
       // The rows of a carrier follow each other.
       for (Index j = 0; j < nq + nv; ++j) {
-        const int column =
-            j < nq ? by.coordinates[static_cast<std::size_t>(j)] : by.velocities[static_cast<std::size_t>(j - nq)];
+        const int column = j < nq ? by.coordinates[static_cast<std::size_t>(j)]
+                                  : by.velocities[static_cast<std::size_t>(j - nq)];
         into.add(on.velocities.front(), column, block.col(j));
       }
     }
@@ -91,7 +93,8 @@ void FrameForces::jacobian(const DaePoint& at, double /*c*/, std::vector<double>
       if (!on.moves_freely) continue;
       Eigen::VectorXd block = Eigen::VectorXd::Zero(static_cast<Index>(on.velocities.size()));
       for (const std::size_t i : on.frames)
-        block -= d[i].jacobian.transpose() * by_inner.segment<wrench_rows>(wrench_rows * static_cast<Index>(i));
+        block -=
+            d[i].jacobian.transpose() * by_inner.segment<wrench_rows>(wrench_rows * static_cast<Index>(i));
       into.add(on.velocities.front(), inner_unknowns[z], block);
     }
     for (std::size_t k = 0; k < inner_unknowns.size(); ++k) {

@@ -39,7 +39,8 @@ Vector3d linear_change(const Matrix6X& J, const std::vector<int>& unknowns, cons
 
 }  // namespace
 
-MountPart::MountPart(const MotionMount& mount, MovingFrame frame, wire::RodPart& rod, const MotionOptions& options)
+MountPart::MountPart(const MotionMount& mount, MovingFrame frame, wire::RodPart& rod,
+                     const MotionOptions& options)
     : Constraint(mount.name, std::move(frame), options), rod_(rod), end_(mount.end), give_(mount.give) {
   rod_.carry(end_, [this](const VectorView& y) {
     const MovingFrame::State s = carrier().state(y);
@@ -48,12 +49,14 @@ MountPart::MountPart(const MotionMount& mount, MovingFrame frame, wire::RodPart&
 }
 
 void MountPart::declare(numerics::DaeLayout& layout) {
-  const auto axes = give_.gives() ? std::vector<std::string>{"y", "z"} : std::vector<std::string>{"x", "y", "z"};
+  const auto axes =
+      give_.gives() ? std::vector<std::string>{"y", "z"} : std::vector<std::string>{"x", "y", "z"};
   const int n = constraints();
   set_multipliers(layout.add({name() + " force", axes, n, DaeKind::algebraic, options().force_tolerance, 0}));
   stabiliser_ = layout.add({name() + " stabiliser", axes, n, DaeKind::algebraic, numerics::no_tolerance, 0});
   if (give_.gives() && give_.slips())
-    slip_ = layout.add({name() + " slip [m]", {}, 1, DaeKind::differential, options().position_tolerance, 0, false});
+    slip_ = layout.add(
+        {name() + " slip [m]", {}, 1, DaeKind::differential, options().position_tolerance, 0, false});
 }
 
 // What the mount does at unknowns y. The axes of a rigid mount are the world's.
@@ -123,7 +126,8 @@ std::vector<int> MountPart::balances() const {
 }
 
 void MountPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
-  const std::vector<int> q = carrier().coordinates(), v = carrier().velocities(), x = places(), rows = balances();
+  const std::vector<int> q = carrier().coordinates(), v = carrier().velocities(), x = places(),
+                         rows = balances();
   // Force and stabiliser on the end, and the rows of the constraint.
   for (int i = 0; i < constraints(); ++i) {
     entries.emplace_back(force() + i, force() + i);
@@ -273,7 +277,8 @@ std::vector<std::pair<int, Wrench>> MountPart::add_own_changes(const Hold& h, co
 
 void MountPart::jacobian(const DaePoint& at, double c, std::vector<double>& values) {
   const numerics::PatternValues into(slots(), values);
-  const std::vector<int> q = carrier().coordinates(), v = carrier().velocities(), x = places(), rows = balances();
+  const std::vector<int> q = carrier().coordinates(), v = carrier().velocities(), x = places(),
+                         rows = balances();
   const MovingFrame::Derivatives d = carrier().differentiate(at.y);
   const wire::MountCell cell = rod_.mount_cell(at, end_);
   const Hold h = hold(at.y);
@@ -288,7 +293,8 @@ void MountPart::jacobian(const DaePoint& at, double c, std::vector<double>& valu
   }
   // Constraint, half cell and the wrench (M - r x f, -f) by coordinates and velocities of the carrier, through the turn,
   // the shift and the spin of the mount.
-  Matrix6X wrench_by_q = Matrix6X::Zero(6, d.place.cols()), wrench_by_v = Matrix6X::Zero(6, d.jacobian.cols());
+  Matrix6X wrench_by_q = Matrix6X::Zero(6, d.place.cols()),
+           wrench_by_v = Matrix6X::Zero(6, d.jacobian.cols());
   for (std::size_t k = 0; k < q.size(); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     Change change;
@@ -332,7 +338,8 @@ void MountPart::jacobian(const DaePoint& at, double c, std::vector<double>& valu
       if (!angle) into.add(v[r], rows[k], -by_rate(row, column));
     }
     const Vector3d turning = d.jacobian.col(row).head<3>(), linear = d.jacobian.col(row).tail<3>();
-    for (const auto& [column, by] : own) into.add(v[r], column, -turning.dot(by.moment) - linear.dot(by.force));
+    for (const auto& [column, by] : own)
+      into.add(v[r], column, -turning.dot(by.moment) - linear.dot(by.force));
     for (int i = 0; !give_.gives() && i < 3; ++i) into.add(v[r], force() + i, linear[i]);
   }
 }
@@ -384,7 +391,8 @@ double MountPart::spring_energy(const VectorView& y) const {
 double MountPart::lost_power(const VectorView& y) const {
   if (!give_.gives()) return 0.0;
   const Hold h = hold(y);
-  return give_.damping * h.rate * h.rate + (slip_ >= 0 ? give_.stiffness * h.strain * slip(h.strain).rate : 0.0);
+  return give_.damping * h.rate * h.rate +
+         (slip_ >= 0 ? give_.stiffness * h.strain * slip(h.strain).rate : 0.0);
 }
 
 double MountPart::gap(const VectorView& y) const {

@@ -32,7 +32,8 @@ class MountPart final : public Constraint {
   void place(Eigen::VectorXd& y) const;
 
   [[nodiscard]] int constraints() const override { return give_.gives() ? 2 : 3; }
-  [[nodiscard]] Eigen::VectorXd velocity_error(const numerics::VectorView& y, const Eigen::VectorXd& dv) const override;
+  [[nodiscard]] Eigen::VectorXd velocity_error(const numerics::VectorView& y,
+                                               const Eigen::VectorXd& dv) const override;
   /// Constraint: what B^T w changes by along the rates of the coordinates while the velocities stay [m/s^2].
   [[nodiscard]] Eigen::VectorXd acceleration_bias(const numerics::VectorView& y,
                                                   const Eigen::VectorXd& rate) const override;
@@ -42,7 +43,9 @@ class MountPart final : public Constraint {
   /// Force f on the wire's end, and its moment r x f about the mount; the half cell's is `moment`.
   [[nodiscard]] multibody::Wrench wrench(const numerics::VectorView& y) const override;
   /// Of the wire on the mount, at the point of the rod's last evaluation [N m].
-  [[nodiscard]] Eigen::Vector3d moment(const numerics::DaePoint& at) const { return rod_.mount_moment(at, end_); }
+  [[nodiscard]] Eigen::Vector3d moment(const numerics::DaePoint& at) const {
+    return rod_.mount_moment(at, end_);
+  }
   [[nodiscard]] const wire::RodPart& rod() const { return rod_; }
   [[nodiscard]] wire::End end() const { return end_; }
   /// Of the spring [J], and what spring and dashpot lose [W], >= 0; y in SI units.

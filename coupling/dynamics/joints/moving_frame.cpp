@@ -40,7 +40,8 @@ bool MovingFrame::moves_freely() const {
 std::vector<int> MovingFrame::coordinates() const {
   std::vector<int> list;
   const int first = body_ != nullptr ? body_->position() : (arm_ != nullptr ? arm_->coordinates() : 0);
-  const int count = body_ != nullptr ? BodyPart::coordinates : (arm_ != nullptr ? arm_->arm().tree.coordinates() : 0);
+  const int count =
+      body_ != nullptr ? BodyPart::coordinates : (arm_ != nullptr ? arm_->arm().tree.coordinates() : 0);
   list.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) list.push_back(first + i);
   return list;
@@ -49,7 +50,8 @@ std::vector<int> MovingFrame::coordinates() const {
 std::vector<int> MovingFrame::velocities() const {
   std::vector<int> list;
   const int first = body_ != nullptr ? body_->velocity() : (arm_ != nullptr ? arm_->velocities() : 0);
-  const int count = body_ != nullptr ? BodyPart::velocities : (arm_ != nullptr ? arm_->arm().tree.velocities() : 0);
+  const int count =
+      body_ != nullptr ? BodyPart::velocities : (arm_ != nullptr ? arm_->arm().tree.velocities() : 0);
   list.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) list.push_back(first + i);
   return list;
@@ -111,7 +113,8 @@ void MovingFrame::Derivatives::for_changes(const Each& each) const {
     const Vector3d s_j = angular(j.velocity), v_j = linear(j.velocity);
     for (const ChainAxis& i : chain_) {
       if (i.depth >= j.depth)
-        each(i.velocity, j.velocity, multibody::Twist{s_j.cross(angular(i.velocity)), s_j.cross(linear(i.velocity))});
+        each(i.velocity, j.velocity,
+             multibody::Twist{s_j.cross(angular(i.velocity)), s_j.cross(linear(i.velocity))});
       else
         each(i.velocity, j.velocity, multibody::Twist{Vector3d::Zero(), angular(i.velocity).cross(v_j)});
     }
@@ -120,7 +123,8 @@ void MovingFrame::Derivatives::for_changes(const Each& each) const {
 
 void MovingFrame::Derivatives::add_motion(const Eigen::Ref<const Eigen::VectorXd>& velocities) {
   Matrix6X by = Matrix6X::Zero(6, of_arm() ? jacobian.cols() : place.cols());
-  for_changes([&](int i, int j, const multibody::Twist& change) { by.col(j) += velocities[i] * change.vector(); });
+  for_changes(
+      [&](int i, int j, const multibody::Twist& change) { by.col(j) += velocities[i] * change.vector(); });
   motion = of_arm() ? Matrix6X(by * to_motion_) : by;
 }
 
@@ -168,12 +172,14 @@ void MovingFrame::push(const VectorView& y, const Wrench& wrench, Eigen::Ref<Eig
     return;
   }
   const multibody::Kinematics& kinematics = arm_->kinematics(y);
-  multibody::add_force(
-      arm_->arm().tree, kinematics, tree_body_, (kinematics.X_WB[static_cast<std::size_t>(tree_body_)] * X_CF_).p,
-      {-wrench.moment, -wrench.force}, rows.segment(arm_->velocities(), arm_->arm().tree.velocities()));
+  multibody::add_force(arm_->arm().tree, kinematics, tree_body_,
+                       (kinematics.X_WB[static_cast<std::size_t>(tree_body_)] * X_CF_).p,
+                       {-wrench.moment, -wrench.force},
+                       rows.segment(arm_->velocities(), arm_->arm().tree.velocities()));
 }
 
-void MovingFrame::push(const Matrix6X& jacobian, const Wrench& wrench, Eigen::Ref<Eigen::VectorXd> rows) const {
+void MovingFrame::push(const Matrix6X& jacobian, const Wrench& wrench,
+                       Eigen::Ref<Eigen::VectorXd> rows) const {
   if (!moves_freely()) return;
   const int first = body_ != nullptr ? body_->velocity() : arm_->velocities();
   rows.segment(first, jacobian.cols()) -= jacobian.transpose() * wrench.vector();
@@ -190,7 +196,8 @@ void MovingFrame::apply_impulse(const VectorView& y, const Matrix6X& jacobian, c
   }
   const multibody::Tree& tree = arm_->arm().tree;
   multibody::DynamicsWorkspace workspace(tree);
-  const MatrixXd& H = multibody::mass_matrix(tree, y.segment(arm_->coordinates(), tree.coordinates()), workspace);
+  const MatrixXd& H =
+      multibody::mass_matrix(tree, y.segment(arm_->coordinates(), tree.coordinates()), workspace);
   dv.segment(arm_->velocities(), tree.velocities()) += numerics::solve_symmetric(H, force);
 }
 

@@ -53,10 +53,11 @@ class MovingFrame {
     void add_motion(const Eigen::Ref<const Eigen::VectorXd>& velocities);
     [[nodiscard]] bool of_arm() const { return to_motion_.size() > 0; }
 
-    std::vector<ChainAxis> chain_;        // of an arm
-    Eigen::MatrixXd to_motion_;           // (velocities x coordinates) of an arm: motions of its joints by coordinates
+    std::vector<ChainAxis> chain_;  // of an arm
+    Eigen::MatrixXd to_motion_;  // (velocities x coordinates) of an arm: motions of its joints by coordinates
     Eigen::Matrix<double, 3, 4> turn_{};  // of a body: its turn by the quaternion
-    int first_turning_ = 0, spin_ = 0;    // of a body: the quaternion among coordinates, the spin among velocities
+    int first_turning_ = 0,
+        spin_ = 0;  // of a body: the quaternion among coordinates, the spin among velocities
   };
   /// At unknowns y of the run (SI units).
   [[nodiscard]] Derivatives differentiate(const numerics::VectorView& y) const;
@@ -69,7 +70,8 @@ class MovingFrame {
   /// Whether forces on it move it.
   [[nodiscard]] bool moves_freely() const;
   /// Adds -J^T F [N m, N] to the rows of whoever carries it; the first without a Jacobian.
-  void push(const numerics::VectorView& y, const multibody::Wrench& wrench, Eigen::Ref<Eigen::VectorXd> rows) const;
+  void push(const numerics::VectorView& y, const multibody::Wrench& wrench,
+            Eigen::Ref<Eigen::VectorXd> rows) const;
   void push(const multibody::Matrix6X& jacobian, const multibody::Wrench& wrench,
             Eigen::Ref<Eigen::VectorXd> rows) const;
   /// Adds M^-1 J^T F, what the wrench does to the velocities (or accelerations) of its carrier, in SI units.

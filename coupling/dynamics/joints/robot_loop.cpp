@@ -59,14 +59,15 @@ bool RobotLoop::begin_interval(double time, bool anew) {
 }
 
 double RobotLoop::next_break(double time) const {
-  const auto next = std::find_if(breaks_.begin(), breaks_.end(), [time](double b) { return b > time + same_time; });
+  const auto next =
+      std::find_if(breaks_.begin(), breaks_.end(), [time](double b) { return b > time + same_time; });
   return next == breaks_.end() ? std::numeric_limits<double>::infinity() : *next;
 }
 
 RobotLoop::Stretch RobotLoop::stretch(double time) const {
   if (records_.empty() || time <= records_.front().time) return {};
-  auto to =
-      std::upper_bound(records_.begin(), records_.end(), time, [](double t, const Record& r) { return t < r.time; });
+  auto to = std::upper_bound(records_.begin(), records_.end(), time,
+                             [](double t, const Record& r) { return t < r.time; });
   if (to == records_.end()) return {&records_.back(), &records_.back(), 0.0};
   const auto from = to - 1;
   return {&*from, &*to, (time - from->time) / (to->time - from->time)};
@@ -78,8 +79,8 @@ Vector3d RobotLoop::velocity(double time) const {
   Vector3d impulse = Vector3d::Zero();
   if (a != nullptr) {
     const double h = b->time - a->time, r = 1.0 - s;
-    impulse =
-        a->impulse + s * s * (3.0 - 2.0 * s) * (b->impulse - a->impulse) + h * s * r * (r * a->force - s * b->force);
+    impulse = a->impulse + s * s * (3.0 - 2.0 * s) * (b->impulse - a->impulse) +
+              h * s * r * (r * a->force - s * b->force);
   }
   return body_.start.velocity + impulse / body_.robot->mass;
 }

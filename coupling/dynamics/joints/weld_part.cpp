@@ -102,7 +102,8 @@ void WeldPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& v
     const std::vector<int> q = frame->coordinates(), v = frame->velocities();
     const double sign = held ? 1.0 : -1.0;
     // d(a x h)/2 = ((a.h) 1 - h a^T) phi/2 by the turn phi of H, -((a.h) 1 - a h^T) phi/2 by that of A.
-    const Matrix3d by_turn = 0.5 * sign * (trace - (held ? R_AH_in_world : Matrix3d(R_AH_in_world.transpose())));
+    const Matrix3d by_turn =
+        0.5 * sign * (trace - (held ? R_AH_in_world : Matrix3d(R_AH_in_world.transpose())));
     for (std::size_t k = 0; k < q.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
       const Vector3d turn = d.place.col(column).head<3>(), shift = d.place.col(column).tail<3>();
@@ -110,7 +111,8 @@ void WeldPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& v
         into.add(moment() + i, q[k], by_turn.row(i).dot(turn));
         into.add(force() + i, q[k], sign * shift[i]);
       }
-      for (int i = 0; i < constraints(); ++i) into.add(turn_stabiliser() + i, q[k], sign * d.motion(i, column));
+      for (int i = 0; i < constraints(); ++i)
+        into.add(turn_stabiliser() + i, q[k], sign * d.motion(i, column));
     }
     for (std::size_t k = 0; k < v.size(); ++k) {
       for (int i = 0; i < constraints(); ++i)

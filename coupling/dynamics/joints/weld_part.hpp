@@ -21,7 +21,8 @@ class WeldPart final : public Constraint {
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
 
   [[nodiscard]] int constraints() const override { return 6; }
-  [[nodiscard]] Eigen::VectorXd velocity_error(const numerics::VectorView& y, const Eigen::VectorXd& dv) const override;
+  [[nodiscard]] Eigen::VectorXd velocity_error(const numerics::VectorView& y,
+                                               const Eigen::VectorXd& dv) const override;
   /// Constraint: what w_H - w_A and v_H - v_A change by while the velocities stay [rad/s^2, m/s^2].
   [[nodiscard]] Eigen::VectorXd acceleration_bias(const numerics::VectorView& y,
                                                   const Eigen::VectorXd& rate) const override;

@@ -50,7 +50,8 @@ void LawPart::sparsity(std::vector<std::pair<int, int>>& entries) const {
 void LawPart::attach_pattern(const numerics::SparseMatrix& pattern) {
   slots_.clear();
   for (int i = 0; i < body_rows; ++i) {
-    for (int j = 0; j < body_columns; ++j) slots_.push_back(pattern.slot(body_.velocity() + i, body_.position() + j));
+    for (int j = 0; j < body_columns; ++j)
+      slots_.push_back(pattern.slot(body_.velocity() + i, body_.position() + j));
   }
 }
 
@@ -76,9 +77,9 @@ void LawPart::jacobian(const DaePoint& at, double /*c*/, std::vector<double>& va
   by.topRows<3>() = n * force_by;
   by.bottomRows<3>() = g.arm.cross(n_in_body) * force_by;
   // The direction turns in B: R^T n changes by -phi x (R^T n), phi = 4 Q^T dq.
-  by.bottomRows<3>().middleCols<4>(body_.quaternion() - body_.position()) += g.law.x() * numerics::cross_matrix(g.arm) *
-                                                                             numerics::cross_matrix(n_in_body) * 4.0 *
-                                                                             multibody::quaternion_rates(q).transpose();
+  by.bottomRows<3>().middleCols<4>(body_.quaternion() - body_.position()) +=
+      g.law.x() * numerics::cross_matrix(g.arm) * numerics::cross_matrix(n_in_body) * 4.0 *
+      multibody::quaternion_rates(q).transpose();
   for (int i = 0; i < body_rows; ++i) {
     for (int j = 0; j < body_columns; ++j)
       values[static_cast<std::size_t>(slots_[static_cast<std::size_t>(body_columns * i + j)])] += by(i, j);
@@ -122,7 +123,8 @@ Interaction::Load LawPart::load(const DaePoint& at) const {
   return {s.force, s.normal_force};
 }
 
-Interaction::Observed LawPart::observe(const DaePoint& now, double /*time_before*/, const Eigen::VectorXd& /*before*/) {
+Interaction::Observed LawPart::observe(const DaePoint& now, double /*time_before*/,
+                                       const Eigen::VectorXd& /*before*/) {
   return {.normal = sample(now).normal_force, .events = {}};
 }
 

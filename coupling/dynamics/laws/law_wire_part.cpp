@@ -43,7 +43,8 @@ struct NearestOfLines {
 template <class S>
 struct PlaneCrossing {
   bool exists = false;
-  Vector3<S> chord, push, across, axis, point;  ///< unit vectors in the plane, its normal, the shaft's axis; the place
+  Vector3<S> chord, push, across, axis,
+      point;  ///< unit vectors in the plane, its normal, the shaft's axis; the place
   S span{}, along_axis{}, along_chord{};
 
   PlaneCrossing(const std::array<FrameMotion<S>, 3>& frames, const Vector3d& binormal, double side) {
@@ -99,15 +100,16 @@ template <class S>
 struct LawWirePart::Action {
   std::array<FrameWrench<S>, 3> wrenches;
   bool acts = false, touches = false;
-  double angle = 0.0;                                // of a string, between the mounts as seen from the axis
-  S depth{-1.0};                                     // elongation, or x of the rod
-  S tension{}, normal{};                             // [N]
-  Vector3<S> point;                                  // on the shaft
-  Vector3<S> slide = Vector3<S>::Zero();             // of the shaft along the wire there
-  S share{0.5};                                      // of the way from the first mount
-  double stiffness = 0.0, rate = 0.0, energy = 0.0;  // of the string: d(tension)/d(elongation), rate of the elongation
-  double lost = 0.0;                                 // of a rod or a push, by damping [W]
-  std::array<Stop<S>, 2> stops{};                    // at the mounts of a string, by their frames
+  double angle = 0.0;                     // of a string, between the mounts as seen from the axis
+  S depth{-1.0};                          // elongation, or x of the rod
+  S tension{}, normal{};                  // [N]
+  Vector3<S> point;                       // on the shaft
+  Vector3<S> slide = Vector3<S>::Zero();  // of the shaft along the wire there
+  S share{0.5};                           // of the way from the first mount
+  double stiffness = 0.0, rate = 0.0,
+         energy = 0.0;             // of the string: d(tension)/d(elongation), rate of the elongation
+  double lost = 0.0;               // of a rod or a push, by damping [W]
+  std::array<Stop<S>, 2> stops{};  // at the mounts of a string, by their frames
 };
 
 LawWirePart::LawWirePart(const LawWire& wire, MovingFrame from, MovingFrame to, MovingFrame shaft)
@@ -132,7 +134,8 @@ void add_friction(std::array<FrameWrench<S>, 3>& wrenches, const std::array<Fram
 template <class S>
 Vector3<S> slide_at(const std::array<FrameMotion<S>, 3>& frames, const Vector3<S>& point, const S& share,
                     const Vector3<S>& n) {
-  const Vector3<S> v = frames[on_shaft].velocity_at(point) - frames[from].velocity_at(point) * (S(1.0) - share) -
+  const Vector3<S> v = frames[on_shaft].velocity_at(point) -
+                       frames[from].velocity_at(point) * (S(1.0) - share) -
                        frames[to].velocity_at(point) * share;
   return v - n * n.dot(v);
 }
@@ -189,7 +192,8 @@ LawWirePart::Action<S> LawWirePart::stretched(const std::array<FrameMotion<S>, 3
   angle += circle * std::round((angle_ - value_of(angle)) / circle);  // as it has turned since the shaft came
   a.angle = value_of(angle);
   a.touches = holds_ && a.angle > on_p.turn + on_t.turn;
-  Vector3<S> u_p, u_t, q_p = P, q_t = T;  // pulls on the mounts, and where the string meets and leaves the shaft
+  Vector3<S> u_p, u_t, q_p = P,
+                       q_t = T;  // pulls on the mounts, and where the string meets and leaves the shaft
   S length;
   if (a.touches) {
     const S &t_p = on_p.length, &t_t = on_t.length;
@@ -199,8 +203,10 @@ LawWirePart::Action<S> LawWirePart::stretched(const std::array<FrameMotion<S>, 3
     const S rise = height / length, along = flat / length;
     u_p = (axis.cross(p_unit) * (r / rho_p) - p_unit * (t_p / rho_p)) * along + axis * rise;
     u_t = (-axis.cross(t_unit) * (r / rho_t) - t_unit * (t_t / rho_t)) * along - axis * rise;
-    q_p = c + p_unit * on_p.foot + axis.cross(p_unit) * (r * t_p / rho_p) + axis * (z_p + height * t_p / flat);
-    q_t = c + t_unit * on_t.foot - axis.cross(t_unit) * (r * t_t / rho_t) + axis * (z_t - height * t_t / flat);
+    q_p =
+        c + p_unit * on_p.foot + axis.cross(p_unit) * (r * t_p / rho_p) + axis * (z_p + height * t_p / flat);
+    q_t =
+        c + t_unit * on_t.foot - axis.cross(t_unit) * (r * t_t / rho_t) + axis * (z_t - height * t_t / flat);
     a.point = (q_p + q_t) * S(0.5);
     a.share = (t_p + 0.5 * (flat - t_p - t_t)) / flat;
   } else {
@@ -213,7 +219,8 @@ LawWirePart::Action<S> LawWirePart::stretched(const std::array<FrameMotion<S>, 3
   if (!(value_of(a.depth) > 0.0)) return a;
   const double k = a.stiffness = wire_.axial_stiffness / wire_.length;
   S rate = -u_p.dot(frames[from].linear) - u_t.dot(frames[to].linear);
-  if (a.touches) rate += u_p.dot(frames[on_shaft].velocity_at(q_p)) + u_t.dot(frames[on_shaft].velocity_at(q_t));
+  if (a.touches)
+    rate += u_p.dot(frames[on_shaft].velocity_at(q_p)) + u_t.dot(frames[on_shaft].velocity_at(q_t));
   a.rate = value_of(rate);
   a.tension = k * (a.depth + wire_.axial_time * rate);
   a.energy = 0.5 * k * value_of(a.depth) * value_of(a.depth);
@@ -293,7 +300,8 @@ LawWirePart::Action<S> LawWirePart::rod(const std::array<FrameMotion<S>, 3>& fra
   a.wrenches[on_shaft].add(frames[on_shaft], a.point, -n * a.normal);
   a.wrenches[on_shaft].add(frames[on_shaft], q, -sideways);
   a.wrenches[on_shaft].moment -= tilt * (force * along);
-  a.wrenches[from].add(frames[from], P, n * a.normal * (S(1.0) - share) + sideways * (S(1.0) - share) + leaning);
+  a.wrenches[from].add(frames[from], P,
+                       n * a.normal * (S(1.0) - share) + sideways * (S(1.0) - share) + leaning);
   a.wrenches[to].add(frames[to], T, n * a.normal * share + sideways * share - leaning);
   a.slide = slide_at(frames, a.point, share, n);
   add_friction(a.wrenches, frames, a.point, smooth_friction(wire_.friction, a.slide, a.normal), share);
@@ -429,7 +437,8 @@ void LawWirePart::update_candidates(const VectorView& y) {
     holds_ = true;
     angle_ = std::numbers::pi;
     const double depth = act(now).depth;
-    holds_ = depth <= (wire_.kind == LawWire::Kind::stretched ? largest_strain * wire_.length : wire_.shaft.radius);
+    holds_ = depth <=
+             (wire_.kind == LawWire::Kind::stretched ? largest_strain * wire_.length : wire_.shaft.radius);
   }
   if (holds_) angle_ = act(now).angle;
 }

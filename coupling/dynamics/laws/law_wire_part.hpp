@@ -54,7 +54,8 @@ class LawWirePart final : public UnilateralForcePart {
   template <class S>
   [[nodiscard]] Action<S> stretched(const std::array<FrameMotion<S>, 3>& frames) const;
   template <class S>
-  [[nodiscard]] Stop<S> stop(const std::array<FrameMotion<S>, 3>& frames, std::size_t mount, Action<S>& a) const;
+  [[nodiscard]] Stop<S> stop(const std::array<FrameMotion<S>, 3>& frames, std::size_t mount,
+                             Action<S>& a) const;
   template <class S>
   [[nodiscard]] Action<S> rod(const std::array<FrameMotion<S>, 3>& frames) const;
   template <class S>
@@ -68,7 +69,7 @@ class LawWirePart final : public UnilateralForcePart {
   ContactLaw stop_;
   bool within_ = false;  // the shaft is within reach along its axis
   bool holds_ = false;   // and was before the wire when it came there
-  double angle_ = 0.0;   // of a string between its mounts as seen from the axis of the shaft, at the last step
+  double angle_ = 0.0;  // of a string between its mounts as seen from the axis of the shaft, at the last step
 };
 
 }  // namespace snare::coupling

@@ -48,9 +48,10 @@ struct MotionWeld {
 
 /// How a mount gives along its axis: a spring that may slip, and a parallel dashpot.                   theory.md (M.38)
 struct MountGive {
-  double stiffness = std::numeric_limits<double>::infinity();   ///< [N/m], > 0; infinite: it does not give
-  double damping = 0.0;                                         ///< [N s/m], >= 0
-  double slip_force = std::numeric_limits<double>::infinity();  ///< of the spring, beyond which it slips [N], > 0
+  double stiffness = std::numeric_limits<double>::infinity();  ///< [N/m], > 0; infinite: it does not give
+  double damping = 0.0;                                        ///< [N s/m], >= 0
+  double slip_force =
+      std::numeric_limits<double>::infinity();  ///< of the spring, beyond which it slips [N], > 0
 
   /// Whether there is a spring, and whether it slips.
   [[nodiscard]] bool gives() const { return !std::isinf(stiffness); }

@@ -68,7 +68,8 @@ LinePoints measured_points(const LinePoints& points) {
   const Eigen::Index parts = std::clamp<Eigen::Index>(enough / n, 1, most_parts), count = (n - 1) * parts + 1;
   LinePoints chords{points.places, points.velocities, {0.0}};
   for (Eigen::Index i = 1; i < n; ++i)
-    chords.coordinates.push_back(chords.coordinates.back() + (points.places.col(i) - points.places.col(i - 1)).norm());
+    chords.coordinates.push_back(chords.coordinates.back() +
+                                 (points.places.col(i) - points.places.col(i - 1)).norm());
   const CentreLine curve(chords);
   LinePoints finer{Matrix3Xd(3, count), Matrix3Xd(3, count), {0.0}};
   Eigen::Index next = 0;

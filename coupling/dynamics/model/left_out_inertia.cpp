@@ -4,7 +4,8 @@
 
 namespace snare::coupling {
 
-void LeftOutMomentum::add(double time, double kinetic, const Eigen::Vector3d& momentum, LeftOutInertia& largest) {
+void LeftOutMomentum::add(double time, double kinetic, const Eigen::Vector3d& momentum,
+                          LeftOutInertia& largest) {
   largest.kinetic = std::max(largest.kinetic, kinetic);
   record_.add(time, momentum);
   const WindowRecord::Record& from = record_.records().front();

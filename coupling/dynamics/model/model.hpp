@@ -33,9 +33,10 @@ namespace snare::coupling {
 /// A wire in motion. The world frame is the wire's own: its mounts are given there.
 struct MotionWire {
   std::string name = "wire";
-  wire::RodInMotion rod;        ///< constants, mounts, damping and mesh
-  Eigen::Matrix3Xd positions;   ///< of the vertices at the start [m]: see straight_wire, resting_wire
-  Eigen::Matrix3Xd velocities;  ///< [m/s]; empty: with its carriers (CarriedWire), at rest between mounts in the world
+  wire::RodInMotion rod;       ///< constants, mounts, damping and mesh
+  Eigen::Matrix3Xd positions;  ///< of the vertices at the start [m]: see straight_wire, resting_wire
+  Eigen::Matrix3Xd
+      velocities;  ///< [m/s]; empty: with its carriers (CarriedWire), at rest between mounts in the world
   WireStrength strength = {};
   WireTightness tightness = {};
 };
@@ -64,7 +65,7 @@ struct MotionContact {
   int body = 0;                               ///< index
   std::shared_ptr<const ContactShape> shape;  ///< in a frame S fixed to the body
   multibody::Pose X_BS;                       ///< of the shape's frame in the body's
-  double wire_radius = 0.0;                   ///< half the wire's diameter [m], >= 0; > 0 for a shape with edges
+  double wire_radius = 0.0;  ///< half the wire's diameter [m], >= 0; > 0 for a shape with edges
   ElasticFoundation foundation;
   MotionFriction friction;
   /// The papers' contact laws in place of the foundation: normal force [N] of the deepest penetration [m] and its rate
@@ -111,8 +112,9 @@ struct Motion {
   std::vector<PointContactLaw> point_contacts;
   std::vector<WirePair> wire_pairs;
   std::vector<MotionArm> arms;
-  std::vector<MotionWeld> welds;    ///< bodies on arms, on other bodies, on the world
-  std::vector<MotionMount> mounts;  ///< ends of wires on arms or bodies, and those that give; the others stand still
+  std::vector<MotionWeld> welds;  ///< bodies on arms, on other bodies, on the world
+  std::vector<MotionMount>
+      mounts;  ///< ends of wires on arms or bodies, and those that give; the others stand still
   std::vector<MotionBushing> bushings;
   std::vector<LawWire> law_wires;  ///< behind the other wires where wires are counted
   std::vector<BodyContact> body_contacts;
@@ -133,7 +135,8 @@ struct Motion {
   [[nodiscard]] std::size_t first_contact(ContactKind kind) const {
     const std::array<std::size_t, 4> counts{contacts.size(), point_contacts.size(), wire_pairs.size(),
                                             law_wires.size()};
-    return std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(kind), std::size_t{0});
+    return std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(kind),
+                           std::size_t{0});
   }
   /// Kind and index in its list of what presses.
   struct ContactPlace {

@@ -21,8 +21,8 @@ struct MotionOptions {
   double body_velocity_tolerance = 1e-6;  ///< [m/s]
   double angle_tolerance = 1e-7;          ///< of bodies' quaternions [rad]
   double spin_tolerance = 1e-5;           ///< of bodies [rad/s]
-  double force_tolerance = 1.0;           ///< [N], of multipliers: for the Newton iteration only  theory.md (M.12)
-  std::optional<int> max_order;           ///< of IDA, 1 to 5; none: by what moves, theory.md (M.2)
+  double force_tolerance = 1.0;  ///< [N], of multipliers: for the Newton iteration only  theory.md (M.12)
+  std::optional<int> max_order;  ///< of IDA, 1 to 5; none: by what moves, theory.md (M.2)
   /// Of these tolerances that Newton's method may leave at a step, in (0, 1); none: by what moves, theory.md (M.12).
   std::optional<double> newton_share;
   double max_step = std::numeric_limits<double>::infinity();  ///< [s]; no touch is missed without one
@@ -34,8 +34,9 @@ struct MotionOptions {
   /// Simulated time that a window of evaluations must bring [s], >= 0: a run of which it brings less has stalled and is given up, after
   /// half a minute or so of a core; see numerics::Progress.                                         theory.md (M.30)
   double least_advance = 0.0;
-  bool wire_loads = false;     ///< samples have the velocities and section loads of the wires, see WireLoads
-  std::function<bool()> stop;  ///< asked after every step; true: stop. The observer is asked at output times only
+  bool wire_loads = false;  ///< samples have the velocities and section loads of the wires, see WireLoads
+  std::function<bool()>
+      stop;  ///< asked after every step; true: stop. The observer is asked at output times only
 };
 
 }  // namespace snare::coupling

@@ -16,11 +16,11 @@ namespace snare::coupling {
 struct MotionSignal {
   enum class Kind {
     contact_force,  ///< sum of the normal forces of a contact, a spring or a pair of wires, as results count them [N]
-    wire_tension,   ///< of a wire, from its mean strain [N]
-    joint_torque,   ///< size of the torque in the spring of an arm's joint [N m]
-    joint_angle,    ///< of an arm's joint, on the link's side [rad]
-    distance,       ///< of the origins of two frames [m]
-    speed           ///< of two frames' origins relative to each other, size [m/s]
+    wire_tension,  ///< of a wire, from its mean strain [N]
+    joint_torque,  ///< size of the torque in the spring of an arm's joint [N m]
+    joint_angle,   ///< of an arm's joint, on the link's side [rad]
+    distance,      ///< of the origins of two frames [m]
+    speed          ///< of two frames' origins relative to each other, size [m/s]
   };
   Kind kind = Kind::contact_force;
   int index = 0;  ///< of the contact or the wire, or of the arm

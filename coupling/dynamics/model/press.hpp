@@ -39,7 +39,8 @@ template <class Depth>
   // A straight line through two places: a closed one, and another at which the depth is known, as it is not where nothing touches.
   Place open{0.0, at_start}, closed{1.0, at_end}, other = open;
   for (int k = 0; k < tries; ++k) {
-    double share = closed.share + (wanted - closed.depth) * (other.share - closed.share) / (other.depth - closed.depth);
+    double share =
+        closed.share + (wanted - closed.depth) * (other.share - closed.share) / (other.depth - closed.depth);
     if (!(share > open.share && share < closed.share)) share = 0.5 * (open.share + closed.share);
     const Place next{share, depth(share)};
     if (next.depth > wanted / about && next.depth < wanted * about) return share;
@@ -60,7 +61,8 @@ template <class Depth>
 /// tolerance: of places [m]; gap(): at the accepted unknowns [m]; depth(share): after a share of the way [m].
 template <class Gap, class Depth>
 [[nodiscard]] numerics::IterationStart start_with_contact(const Press& accepted, const Press& predicted,
-                                                          double tolerance, const Gap& gap, const Depth& depth) {
+                                                          double tolerance, const Gap& gap,
+                                                          const Depth& depth) {
   constexpr double steady = 8.0;           // most that the load may change by
   const double begun = 0.003 * tolerance;  // depth of a touch that has just begun
   const double reach = 0.3 * tolerance;    // of a step behind the touch
@@ -90,8 +92,9 @@ class AcceptedPress {
   }
   /// Where Newton's method begins between unknowns (SI units); tolerance: of places [m]; gap(y) [m].
   template <class FoundAt, class Gap>
-  [[nodiscard]] numerics::IterationStart start(const numerics::VectorView& from, const numerics::VectorView& to,
-                                               double tolerance, const FoundAt& found_at, const Gap& gap) {
+  [[nodiscard]] numerics::IterationStart start(const numerics::VectorView& from,
+                                               const numerics::VectorView& to, double tolerance,
+                                               const FoundAt& found_at, const Gap& gap) {
     const Press predicted = press_of(found_at(to));
     if (predicted.depth == 0.0) return {};
     if (!inputs_.holds(from)) take(from, found_at);  // a start that was not accepted

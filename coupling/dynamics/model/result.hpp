@@ -59,10 +59,11 @@ struct MotionSample {
   std::vector<multibody::RigidBodyState> bodies;
   /// As Motion::contact_names counts them; of springs, pairs and contacts of bodies on the first of each.
   std::vector<ContactSample> contacts;
-  std::vector<Eigen::Matrix3Xd> wires;        ///< positions of the vertices, then of the wires that laws stand for [m]
+  std::vector<Eigen::Matrix3Xd>
+      wires;  ///< positions of the vertices, then of the wires that laws stand for [m]
   std::vector<Eigen::Vector3d> mount_forces;  ///< on the wire: left, right of each wire [N]
-  std::vector<WireLoads> wire_loads;          ///< of the wires that are rods; empty without MotionOptions::wire_loads
-  std::vector<double> law_tensions;           ///< of the wires that laws stand for [N]
+  std::vector<WireLoads> wire_loads;  ///< of the wires that are rods; empty without MotionOptions::wire_loads
+  std::vector<double> law_tensions;   ///< of the wires that laws stand for [N]
   struct Arm {
     multibody::ArmState state;
     multibody::ArmWork work;
@@ -70,9 +71,11 @@ struct MotionSample {
     Eigen::VectorXd drive_torque;  ///< of the drives on the motors [N m]
   };
   std::vector<Arm> arms;
-  std::vector<multibody::Wrench> welds;  ///< on the held bodies, about their centres of mass, axes of the world
+  std::vector<multibody::Wrench>
+      welds;  ///< on the held bodies, about their centres of mass, axes of the world
   struct Bushing {
-    Eigen::Vector3d shift = Eigen::Vector3d::Zero(), turn = Eigen::Vector3d::Zero();  ///< [m], [rad], axes of the first
+    Eigen::Vector3d shift = Eigen::Vector3d::Zero(),
+                    turn = Eigen::Vector3d::Zero();  ///< [m], [rad], axes of the first
     multibody::Wrench on_second;  ///< about its place on the second carrier, axes of the world
   };
   std::vector<Bushing> bushings;
@@ -115,11 +118,11 @@ struct MotionSums {
   std::vector<double> peak_force;        ///< of everything that presses: see PeakForce [N]
   std::vector<StrengthUse> strength;     ///< largest of every wire, at accepted steps
   std::vector<LeftOutInertia> left_out;  ///< of every wire; zero but of quasi-static ones
-  std::vector<WireUse> wires;            ///< of every wire whose tightness is watched; the others' stay at zero
-  std::vector<PhaseBeginning> phases;    ///< begun
-  double largest_penetration = 0.0;      ///< into the foundations [m]
-  double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]
-  double start_energy = 0.0;             ///< kinetic + strain + potential [J]
+  std::vector<WireUse> wires;          ///< of every wire whose tightness is watched; the others' stay at zero
+  std::vector<PhaseBeginning> phases;  ///< begun
+  double largest_penetration = 0.0;    ///< into the foundations [m]
+  double largest_drift = 0.0;          ///< of quaternions' length from one, and of rigid mounts [-], [m]
+  double start_energy = 0.0;           ///< kinetic + strain + potential [J]
   Eigen::Vector3d start_momentum = Eigen::Vector3d::Zero();          ///< [kg m/s]
   Eigen::Vector3d start_angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
   long samples = 0;                                                  ///< given to the observer
@@ -133,8 +136,9 @@ struct MotionState {
   double time = 0.0;  ///< [s]
   Eigen::VectorXd unknowns;
   Eigen::VectorXd rates;
-  Eigen::VectorXd integrals;   ///< powers, reactions and contact forces over time
-  std::vector<double> memory;  ///< of the parts beside their unknowns: frames of the wires, states of the contacts
+  Eigen::VectorXd integrals;  ///< powers, reactions and contact forces over time
+  std::vector<double>
+      memory;  ///< of the parts beside their unknowns: frames of the wires, states of the contacts
   MotionSums sums;
 };
 
@@ -147,11 +151,11 @@ struct MotionResult {
   Eigen::Vector3d momentum_error = Eigen::Vector3d::Zero();
   /// The same about the origin, less that of all outer moments [N m s].
   Eigen::Vector3d angular_momentum_error = Eigen::Vector3d::Zero();
-  std::vector<double> peak_force;        ///< of everything that presses: see PeakForce [N]
-  std::vector<StrengthUse> strength;     ///< largest of every wire, at accepted steps; empty: no step was made
+  std::vector<double> peak_force;     ///< of everything that presses: see PeakForce [N]
+  std::vector<StrengthUse> strength;  ///< largest of every wire, at accepted steps; empty: no step was made
   std::vector<LeftOutInertia> left_out;  ///< of every wire; zero but of quasi-static ones
-  std::vector<WireUse> wires;            ///< of every wire whose tightness is watched; the others' stay at zero
-  std::vector<PhaseBeginning> phases;    ///< begun
+  std::vector<WireUse> wires;          ///< of every wire whose tightness is watched; the others' stay at zero
+  std::vector<PhaseBeginning> phases;  ///< begun
   std::vector<Eigen::Vector3d> impulse;  ///< of what presses, on the wire or the first of two [N s]
   double largest_penetration = 0.0;      ///< into the foundations [m]
   double largest_drift = 0.0;            ///< of quaternions' length from one, and of rigid mounts [-], [m]

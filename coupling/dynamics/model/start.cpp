@@ -12,7 +12,8 @@ Eigen::Matrix3Xd straight_wire(const wire::RodInMotion& rod, const Vector3d& fro
   const wire::MaterialMesh mesh = rod.mesh();
   const wire::Controls controls = rod.controls();
   Eigen::Matrix3Xd x(3, mesh.vertices());
-  for (int i = 0; i < mesh.vertices(); ++i) x.col(i) = from + mesh.coordinate(i, controls) / rod.length * (to - from);
+  for (int i = 0; i < mesh.vertices(); ++i)
+    x.col(i) = from + mesh.coordinate(i, controls) / rod.length * (to - from);
   return x;
 }
 

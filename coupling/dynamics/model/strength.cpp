@@ -35,12 +35,13 @@ StrengthUse strength_use(const WireStrength& strength, wire::RodPart& rod, const
 
 std::string strength_reached(const WireStrength& strength, const StrengthUse& use) {
   return fmt::format(
-      " reaches its strength of {:.6g} N at {:.9g} s, {:.6g} m along it: tension {:.6g} N, bending as much as {:.6g} N",
+      " reaches its strength of {:.6g} N at {:.9g} s, {:.6g} m along it: tension {:.6g} N, bending as much "
+      "as {:.6g} N",
       strength.breaking_tension, use.time, use.arc, use.tension, use.bending);
 }
 
-std::optional<std::string> watch_strength(const WireStrength& strength, wire::RodPart& rod, const DaePoint& at,
-                                          StrengthUse& largest) {
+std::optional<std::string> watch_strength(const WireStrength& strength, wire::RodPart& rod,
+                                          const DaePoint& at, StrengthUse& largest) {
   if (!std::isfinite(strength.breaking_tension)) return std::nullopt;
   const StrengthUse use = strength_use(strength, rod, at);
   if (use.share > largest.share) largest = use;

@@ -17,13 +17,14 @@ namespace snare::coupling {
 struct WireStrength {
   double breaking_tension = std::numeric_limits<double>::infinity();  ///< of the straight wire [N], > 0
   double bending_force =
-      0.0;                ///< tension that strains it as much as a curvature of one does [N m], >= 0; 0: not counted
+      0.0;  ///< tension that strains it as much as a curvature of one does [N m], >= 0; 0: not counted
   bool ends_run = false;  ///< the run ends where it is reached
 };
 
 /// Of a wire that breaks at `breaking_tension` [N]. Of a solid one bending counts with E pi d^3/8; the wires of a strand bend each
 /// on its own, by what they slide: there the tension alone counts.
-[[nodiscard]] WireStrength wire_strength(const wire::WireSpecification& wire, double breaking_tension, bool ends_run);
+[[nodiscard]] WireStrength wire_strength(const wire::WireSpecification& wire, double breaking_tension,
+                                         bool ends_run);
 
 /// The largest load on a wire at a time.
 struct StrengthUse {
@@ -34,7 +35,8 @@ struct StrengthUse {
   double time = 0.0;     ///< [s]
 };
 /// At a state: the vertex where (T + b |M|/EI)/T_break is largest, T of the edge beside it, M bending, b bending_force.   theory.md (W.34)
-[[nodiscard]] StrengthUse strength_use(const WireStrength& strength, wire::RodPart& rod, const numerics::DaePoint& at);
+[[nodiscard]] StrengthUse strength_use(const WireStrength& strength, wire::RodPart& rod,
+                                       const numerics::DaePoint& at);
 
 /// " reaches its strength of ...": of a use that does.
 [[nodiscard]] std::string strength_reached(const WireStrength& strength, const StrengthUse& use);

@@ -79,7 +79,8 @@ void MotionRun::integrands(const DaePoint& at, Eigen::Ref<VectorXd> rates) {
   const auto count = static_cast<Eigen::Index>(interactions_.size());
   Eigen::Index k = 0;
   for (const auto& i : interactions_) {
-    i->add_rates(at, {rates, integral::contacts + 3 * k, integral::contacts + 3 * count + k, *constraints_, held});
+    i->add_rates(
+        at, {rates, integral::contacts + 3 * k, integral::contacts + 3 * count + k, *constraints_, held});
     ++k;
   }
   for (const LoadPart& l : loads_) constraints_->add_load(l, at, held);
@@ -141,7 +142,8 @@ void MotionRun::observe_interactions(double time_before, const VectorXd& before)
     forces[static_cast<Eigen::Index>(k)] = seen.normal;
     sums_.largest_penetration = std::max(sums_.largest_penetration, seen.penetration);
     for (const MotionEvent& e : seen.events) book(k, e);
-    if (law_wire < law_wires_.size() && law_wires_[law_wire] == &interaction) watch_law_wire(law_wire++, seen.tension);
+    if (law_wire < law_wires_.size() && law_wires_[law_wire] == &interaction)
+      watch_law_wire(law_wire++, seen.tension);
   }
   peak_.add(time_before, time_, forces, integrals_.tail(forces.size()), sums_.peak_force);
   // Laws take no mass of the wire along at once.
@@ -163,8 +165,8 @@ void MotionRun::record_extremes(double time_before, const VectorXd& before) {
     sums_.largest_drift = std::max(sums_.largest_drift, std::abs(y_.segment<4>(b.quaternion()).norm() - 1.0));
     const double speed = b.state(y_).velocity.norm();
     if (speed > fastest_body)
-      broken_ = fmt::format("{} moves at {:.4g} m/s; bodies are computed up to {:g} m/s", motion_.bodies[k].name, speed,
-                            fastest_body);
+      broken_ = fmt::format("{} moves at {:.4g} m/s; bodies are computed up to {:g} m/s",
+                            motion_.bodies[k].name, speed, fastest_body);
   }
   for (const wire::RodPart& r : rods_) sums_.largest_drift = std::max(sums_.largest_drift, r.mount_error(y_));
   for (std::size_t w = 0; w < rods_.size(); ++w) {
@@ -200,7 +202,8 @@ WireLoads loads_of(wire::RodPart& rod, const DaePoint& at) {
   const Eigen::Index last = tensions.size() - 1;
   for (int i = 0; i < rod.vertices(); ++i) {
     loads.velocities.col(i) = at.y.segment<3>(rod.velocity_of(i));
-    loads.tensions[i] = 0.5 * (tensions[std::max<Eigen::Index>(i - 1, 0)] + tensions[std::min<Eigen::Index>(i, last)]);
+    loads.tensions[i] =
+        0.5 * (tensions[std::max<Eigen::Index>(i - 1, 0)] + tensions[std::min<Eigen::Index>(i, last)]);
   }
   return loads;
 }
@@ -212,8 +215,9 @@ MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
   s.time = at.time;
   EnergyBalance e = stored(at, &s);
   // The polynomials through the last steps may overshoot between them; the dissipation only grows.
-  e.dissipated = std::clamp(integrals[integral::dissipated] + law_losses_.at(at.time) + constraints_->lost(at.y),
-                            lost_before_, lost_);
+  e.dissipated =
+      std::clamp(integrals[integral::dissipated] + law_losses_.at(at.time) + constraints_->lost(at.y),
+                 lost_before_, lost_);
   e.work += integrals[integral::work];
   e.integrator = e.kinetic + e.strain + e.potential + e.dissipated - e.work - sums_.start_energy;
   e.corrected = corrected_;

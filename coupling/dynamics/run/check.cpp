@@ -84,10 +84,11 @@ void validate_laws(const Motion& motion, Complaints& c) {
   for (const FrameLoad& l : motion.loads) {
     ConstraintSet::check_carrier(motion, l.name, l.carrier, c);
     const auto n = static_cast<Eigen::Index>(l.times.size());
-    c.require(n >= 2 && l.forces.cols() == n && l.moments.cols() == n, l.name + ".times", static_cast<double>(n),
-              "must be at least two, with a force and a moment each");
+    c.require(n >= 2 && l.forces.cols() == n && l.moments.cols() == n, l.name + ".times",
+              static_cast<double>(n), "must be at least two, with a force and a moment each");
     c.require(std::is_sorted(l.times.begin(), l.times.end()), l.name + ".times", 0.0, "must ascend");
-    c.require(l.forces.allFinite() && l.moments.allFinite(), l.name + ".forces", std::nan(""), "must be finite");
+    c.require(l.forces.allFinite() && l.moments.allFinite(), l.name + ".forces", std::nan(""),
+              "must be finite");
   }
 }
 
@@ -111,7 +112,8 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
   positive("spin_tolerance", options.spin_tolerance);
   positive("newton_share", options.newton_share.value_or(1.0));
   c.require(options.peak_window >= 0.0, "peak_window", options.peak_window, "must be >= 0");
-  c.require(options.checkpoint_interval > 0.0, "checkpoint_interval", options.checkpoint_interval, "must be > 0");
+  c.require(options.checkpoint_interval > 0.0, "checkpoint_interval", options.checkpoint_interval,
+            "must be > 0");
   const int order = options.max_order.value_or(1);
   c.require(order >= 1 && order <= 5, "max_order", order, "must be 1 to 5");
   for (const MotionWire& w : motion.wires) {
@@ -120,14 +122,15 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
     positive(w.name + ".axial_stiffness", w.rod.properties.axial_stiffness);
     positive(w.name + ".bending_stiffness", w.rod.properties.bending_stiffness);
     positive(w.name + ".torsional_stiffness", w.rod.properties.torsional_stiffness);
-    c.require(w.strength.breaking_tension > 0.0, w.name + ".strength", w.strength.breaking_tension, "must be > 0");
+    c.require(w.strength.breaking_tension > 0.0, w.name + ".strength", w.strength.breaking_tension,
+              "must be > 0");
     c.require(w.rod.elements >= 4, w.name + ".elements", w.rod.elements, "must be >= 4");
     if (w.rod.strands.act()) {
       positive(w.name + ".strands.slip_curvature", w.rod.strands.slip_curvature);
       positive(w.name + ".strands.time", w.rod.strands.time);
     }
-    c.require(w.positions.cols() == w.rod.elements + 1, w.name + ".positions", static_cast<double>(w.positions.cols()),
-              "must be one more than the elements");
+    c.require(w.positions.cols() == w.rod.elements + 1, w.name + ".positions",
+              static_cast<double>(w.positions.cols()), "must be one more than the elements");
     c.require(w.velocities.cols() == 0 || w.velocities.cols() == w.rod.elements + 1, w.name + ".velocities",
               static_cast<double>(w.velocities.cols()), "must be none or one more than the elements");
     c.require(w.positions.allFinite() && w.velocities.allFinite(), w.name + ".positions", std::nan(""),
@@ -138,10 +141,12 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
     const Eigen::LLT<Eigen::Matrix3d> factor(b.properties.inertia);
     c.require(factor.info() == Eigen::Success, b.name + ".inertia", b.properties.inertia.trace(),
               "must be positive definite");
-    c.require(static_cast<bool>(b.course_velocity) == static_cast<bool>(b.course_acceleration), b.name + ".course",
-              b.course_velocity ? 1.0 : 0.0, "must have both velocity and acceleration, or none");
+    c.require(static_cast<bool>(b.course_velocity) == static_cast<bool>(b.course_acceleration),
+              b.name + ".course", b.course_velocity ? 1.0 : 0.0,
+              "must have both velocity and acceleration, or none");
     if (b.robot) {
-      c.require(b.driven && !b.course_velocity, b.name + ".robot", 0.0, "must be of a driven body without a course");
+      c.require(b.driven && !b.course_velocity, b.name + ".robot", 0.0,
+                "must be of a driven body without a course");
       positive(b.name + ".robot.mass", b.robot->mass);
       positive(b.name + ".robot.delay", b.robot->delay);
       for (const MotionRobot::Measured& m : b.robot->measured)
@@ -149,8 +154,8 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
                       presses_on_body(motion.contact_place(base::at(m.contact)).kind),
                   b.name + ".robot.contact", m.contact, "must be the index of a contact of a body");
     }
-    c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation", b.start.orientation.norm(),
-              "must be a unit quaternion");
+    c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation",
+              b.start.orientation.norm(), "must be a unit quaternion");
   }
   for (const MotionContact& k : motion.contacts) {
     c.require(k.wire >= 0 && k.wire < static_cast<int>(motion.wires.size()), k.name + ".wire", k.wire,
@@ -168,12 +173,13 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
   for (const WirePair& p : motion.wire_pairs) {
     bool both = true;
     for (std::size_t w = 0; w < 2; ++w) {
-      both = c.require(p.wires[w] >= 0 && p.wires[w] < static_cast<int>(motion.wires.size()), p.name + ".wires",
-                       p.wires[w], "must be indices of wires") &&
+      both = c.require(p.wires[w] >= 0 && p.wires[w] < static_cast<int>(motion.wires.size()),
+                       p.name + ".wires", p.wires[w], "must be indices of wires") &&
              both;
       positive(p.name + ".radii", p.radii[w]);
     }
-    c.require(!both || p.wires[0] != p.wires[1], p.name + ".wires", p.wires[0], "must be two different wires");
+    c.require(!both || p.wires[0] != p.wires[1], p.name + ".wires", p.wires[0],
+              "must be two different wires");
     validate_foundation(c, p.name + ".foundation.", p.foundation);
     validate_friction(c, p.name + ".friction.", p.friction);
   }
@@ -198,8 +204,8 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
   }
   for (const MotionPhase& p : motion.phases) {
     for (const SensedBound& b : p.sensed)
-      c.require(b.sensed >= 0 && b.sensed < static_cast<int>(motion.sensed.size()), p.name + ".sensed", b.sensed,
-                "must be the index of a sensed signal");
+      c.require(b.sensed >= 0 && b.sensed < static_cast<int>(motion.sensed.size()), p.name + ".sensed",
+                b.sensed, "must be the index of a sensed signal");
   }
   ConstraintSet::check(motion, c);
   validate_laws(motion, c);

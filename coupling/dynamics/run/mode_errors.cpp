@@ -53,7 +53,9 @@ std::vector<Cluster> clusters_of(const SmallMotions& coarse) {
   const std::vector<MotionMode>& modes = coarse.modes;
   for (std::size_t first = 0, end = 0; first < modes.size(); first = end) {
     end = first + 1;
-    while (end < modes.size() && modes[end].frequency - modes[end - 1].frequency <= same * modes[end].frequency) ++end;
+    while (end < modes.size() &&
+           modes[end].frequency - modes[end - 1].frequency <= same * modes[end].frequency)
+      ++end;
     Cluster cluster;
     Eigen::MatrixXcd shapes;
     for (std::size_t k = first; k < end; ++k) {

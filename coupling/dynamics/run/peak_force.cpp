@@ -20,7 +20,8 @@ void PeakForce::add(double before, double time, const VectorXd& forces, const Ve
       mean = (impulses - (1.0 - share) * a.values - share * b.values) / window;
     }
   }
-  for (std::size_t k = 0; k < peaks.size(); ++k) peaks[k] = std::max(peaks[k], mean[static_cast<Eigen::Index>(k)]);
+  for (std::size_t k = 0; k < peaks.size(); ++k)
+    peaks[k] = std::max(peaks[k], mean[static_cast<Eigen::Index>(k)]);
 }
 
 }  // namespace snare::coupling

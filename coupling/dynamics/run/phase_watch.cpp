@@ -61,7 +61,8 @@ std::optional<double> PhaseWatch::look(double time, const Signals& signals, cons
   const double now = margin(signals);
   if (now >= 0.0 && keeps_readings(kept)) {
     if (!kept_since_) {
-      const double share = std::isfinite(now) && now > last_margin_ ? -last_margin_ / (now - last_margin_) : 0.0;
+      const double share =
+          std::isfinite(now) && now > last_margin_ ? -last_margin_ / (now - last_margin_) : 0.0;
       kept_since_ = last_time_ + std::clamp(share, 0.0, 1.0) * (time - last_time_);
     }
   } else {
@@ -94,8 +95,8 @@ void PhaseWatch::begin(double time, const Signals& signals, const Kept& kept) {
 }
 
 void PhaseWatch::save_state(std::vector<double>& memory) const {
-  memory.insert(memory.end(), {static_cast<double>(next_), begun_, last_time_, last_margin_, kept_since_ ? 1.0 : 0.0,
-                               kept_since_.value_or(0.0)});
+  memory.insert(memory.end(), {static_cast<double>(next_), begun_, last_time_, last_margin_,
+                               kept_since_ ? 1.0 : 0.0, kept_since_.value_or(0.0)});
 }
 
 void PhaseWatch::restore_state(std::span<const double>& memory) {

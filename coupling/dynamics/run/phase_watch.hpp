@@ -24,7 +24,9 @@ class PhaseWatch {
   explicit PhaseWatch(const std::vector<MotionPhase>& phases) : phases_(phases) {}
 
   /// The next phase, or none.
-  [[nodiscard]] const MotionPhase* pending() const { return next_ < phases_.size() ? &phases_[next_] : nullptr; }
+  [[nodiscard]] const MotionPhase* pending() const {
+    return next_ < phases_.size() ? &phases_[next_] : nullptr;
+  }
   /// Time up to which the next phase cannot begin but by what its signals do [s].
   [[nodiscard]] double limit(double time) const;
   /// Tells it the signals at the time [s] at which it starts, and behind every begun phase.

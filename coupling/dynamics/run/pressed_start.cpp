@@ -49,9 +49,10 @@ Matrix3Xd pressed_wire(const wire::RodInMotion& rod, double wire_radius, const R
   const double span = (rod.properties.right.position - rod.properties.left.position).norm();
   const Matrix3Xd arc = arc_between(span, rod.length, rod.elements);
   if (reach_of(arc, wall) + wire_radius > wall.inner_radius) {
-    throw base::InputError({"", 0, "wall.radius_mm", fmt::format("{:.6g}", 1e3 * wall.inner_radius),
-                            fmt::format("must leave room for the arc of the open wire, which reaches to {:.6g} mm",
-                                        1e3 * (reach_of(arc, wall) + wire_radius))});
+    throw base::InputError(
+        {"", 0, "wall.radius_mm", fmt::format("{:.6g}", 1e3 * wall.inner_radius),
+         fmt::format("must leave room for the arc of the open wire, which reaches to {:.6g} mm",
+                     1e3 * (reach_of(arc, wall) + wire_radius))});
   }
   constexpr double damping = 1e-3, duration = 60.0 * damping;  // [s]
   constexpr double still = 1e-8;                               // [m], over the second half of it
@@ -88,9 +89,10 @@ Matrix3Xd pressed_wire(const wire::RodInMotion& rod, double wire_radius, const R
     return false;
   });
   if (!result.report.usable() || !((now - before).colwise().norm().maxCoeff() <= still)) {
-    throw base::InputError({"", 0, "wall.radius_mm", fmt::format("{:.6g}", 1e3 * wall.inner_radius),
-                            "must let the open wire come to rest against it: " +
-                                (result.report.usable() ? std::string("it still moves") : result.report.message)});
+    throw base::InputError(
+        {"", 0, "wall.radius_mm", fmt::format("{:.6g}", 1e3 * wall.inner_radius),
+         "must let the open wire come to rest against it: " +
+             (result.report.usable() ? std::string("it still moves") : result.report.message)});
   }
   return now;
 }

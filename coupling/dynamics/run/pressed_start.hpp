@@ -21,6 +21,7 @@ struct RoundWall {
 ///
 /// The wire begins as the arc of its length between its mounts and follows what bends it and what presses on it, damped and without inertia,
 /// until it rests. Throws base::InputError where that arc does not fit into the wall or no rest is found.
-[[nodiscard]] Eigen::Matrix3Xd pressed_wire(const wire::RodInMotion& rod, double wire_radius, const RoundWall& wall);
+[[nodiscard]] Eigen::Matrix3Xd pressed_wire(const wire::RodInMotion& rod, double wire_radius,
+                                            const RoundWall& wall);
 
 }  // namespace snare::coupling

@@ -45,7 +45,8 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   for (const MotionWire& w : motion.wires) {
     wire::RodInMotion rod = w.rod;
     rod.properties.weight = rod.mass_per_length * motion.gravity;
-    const double of_velocity = rod.quasi_static ? options.quasi_static_velocity_tolerance : options.velocity_tolerance;
+    const double of_velocity =
+        rod.quasi_static ? options.quasi_static_velocity_tolerance : options.velocity_tolerance;
     rods_.emplace_back(w.name, rod,
                        wire::RodTolerances{options.position_tolerance, of_velocity, options.twist_tolerance});
   }
@@ -53,7 +54,8 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
     bodies_.emplace_back(b.robot ? loops_.emplace_back(b).moved() : b, motion.gravity, options);
   constraints_.emplace(motion, rods_, bodies_, options);
   add_interactions();
-  for (const FrameLoad& l : motion.loads) loads_.emplace_back(l, constraints_->frame_of(l.carrier, bodies_, l.X_WF));
+  for (const FrameLoad& l : motion.loads)
+    loads_.emplace_back(l, constraints_->frame_of(l.carrier, bodies_, l.X_WF));
   system_ = std::make_unique<numerics::DaeSystem>(parts());
   if (system_->size() == 0)
     throw base::InputError({"", 0, "", "", "nothing can move: no wire with mass, no body, no arm"});
@@ -70,15 +72,17 @@ MotionRun::MotionRun(const Motion& motion, const MotionOptions& options, const M
   ida.max_order = options.max_order.value_or(default_order());
   ida.max_step = options.max_step;
   ida.newton_test = numerics::NewtonTest::every_unknown;
-  const bool waves = !std::ranges::all_of(motion.wires, [](const MotionWire& w) { return w.rod.quasi_static; });
+  const bool waves =
+      !std::ranges::all_of(motion.wires, [](const MotionWire& w) { return w.rod.quasi_static; });
   ida.newton_share = options.newton_share.value_or(waves ? share_of_rods : share_of_bodies);
   if (!waves) ida.matrix_change = matrix_change_without_waves;
   if (!rods_.empty()) ida.renewals = renewals_of_wires;
   integrals_ = VectorXd::Zero(integral::contacts + 4 * static_cast<Eigen::Index>(interactions_.size()));
   ida_ = std::make_unique<numerics::Ida>(
       *system_, ida,
-      numerics::IdaIntegrals{static_cast<int>(integrals_.size()),
-                             [this](const DaePoint& at, Eigen::Ref<VectorXd> rates) { integrands(at, rates); }});
+      numerics::IdaIntegrals{
+          static_cast<int>(integrals_.size()),
+          [this](const DaePoint& at, Eigen::Ref<VectorXd> rates) { integrands(at, rates); }});
   peak_ = PeakForce(options.peak_window);
   sums_.peak_force.assign(interactions_.size(), 0.0);
   left_out_.assign(rods_.size(), LeftOutMomentum(options.peak_window));
@@ -93,7 +97,8 @@ void MotionRun::add_interactions() {
   const auto add = [this](auto interaction) { interactions_.push_back(std::move(interaction)); };
   for (const MotionContact& c : motion_.contacts)
     add(std::make_unique<ContactGroup>(c, rods_[base::at(c.wire)], bodies_[base::at(c.body)]));
-  for (const PointContactLaw& s : motion_.point_contacts) add(std::make_unique<LawPart>(s, bodies_[base::at(s.body)]));
+  for (const PointContactLaw& s : motion_.point_contacts)
+    add(std::make_unique<LawPart>(s, bodies_[base::at(s.body)]));
   for (const WirePair& p : motion_.wire_pairs)
     add(std::make_unique<WirePairPart>(p, rods_[base::at(p.wires[0])], rods_[base::at(p.wires[1])]));
   for (const LawWire& w : motion_.law_wires) {
@@ -119,7 +124,8 @@ std::vector<numerics::DaePart*> MotionRun::parts() {
 int MotionRun::default_order() const {
   constexpr int a_stable = 2, of_laws = 3, of_bodies = 5;
   if (!rods_.empty()) return a_stable;
-  if (std::ranges::any_of(interactions_, [](const auto& i) { return i->has_body_bristles(); })) return a_stable;
+  if (std::ranges::any_of(interactions_, [](const auto& i) { return i->has_body_bristles(); }))
+    return a_stable;
   return interactions_.empty() ? of_bodies : of_laws;
 }
 
@@ -144,7 +150,9 @@ void MotionRun::stay_in_plane() {
     planes.push_back(*plane);
   }
   std::vector<int> held;
-  const auto hold = [&held](const std::vector<int>& across) { held.insert(held.end(), across.begin(), across.end()); };
+  const auto hold = [&held](const std::vector<int>& across) {
+    held.insert(held.end(), across.begin(), across.end());
+  };
   for (std::size_t i = 0; i < rods_.size(); ++i) hold(rods_[i].restrict_to_plane(planes[i]));
   for (const BodyPart& b : bodies_) hold(b.unknowns_across(*normal));
   for (const auto& i : interactions_) hold(i->restrict_to_plane(*normal));
@@ -166,17 +174,20 @@ bool all_finite(const std::vector<Vector3d>& vectors) {
 /// Of what becomes columns of a history.
 bool all_finite(const MotionSample& s) {
   const auto of_body = [](const multibody::RigidBodyState& b) {
-    return b.position.allFinite() && b.orientation.coeffs().allFinite() && b.velocity.allFinite() && b.spin.allFinite();
+    return b.position.allFinite() && b.orientation.coeffs().allFinite() && b.velocity.allFinite() &&
+           b.spin.allFinite();
   };
   const auto of_contact = [](const ContactSample& c) {
-    return std::isfinite(c.gap) && c.force.allFinite() && std::isfinite(c.normal_force) && c.point.allFinite() &&
-           std::isfinite(c.arc) && std::isfinite(c.slip_speed);
+    return std::isfinite(c.gap) && c.force.allFinite() && std::isfinite(c.normal_force) &&
+           c.point.allFinite() && std::isfinite(c.arc) && std::isfinite(c.slip_speed);
   };
   const auto of_arm = [](const MotionSample::Arm& a) {
     return a.state.q.allFinite() && a.state.v.allFinite() && a.state.motor.allFinite() &&
            a.state.motor_rate.allFinite() && a.joint_torque.allFinite() && a.drive_torque.allFinite();
   };
-  const auto of_wrench = [](const multibody::Wrench& w) { return w.moment.allFinite() && w.force.allFinite(); };
+  const auto of_wrench = [](const multibody::Wrench& w) {
+    return w.moment.allFinite() && w.force.allFinite();
+  };
   const auto of_bushing = [&](const MotionSample::Bushing& b) {
     return b.shift.allFinite() && b.turn.allFinite() && of_wrench(b.on_second);
   };

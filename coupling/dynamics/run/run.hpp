@@ -57,7 +57,8 @@ class MotionRun {
  private:
   void add_interactions();
   [[nodiscard]] std::vector<numerics::DaePart*> parts();
-  [[nodiscard]] int default_order() const;  // of the integrator                                       theory.md (M.2)
+  [[nodiscard]] int default_order()
+      const;  // of the integrator                                       theory.md (M.2)
   void require_apart();
   void stay_in_plane();
   void leave_plane();
@@ -136,8 +137,9 @@ class MotionRun {
   Eigen::VectorXd before_;  // y of the step before
   Eigen::VectorXd integrals_;
   LossSum law_losses_;
-  double lost_ = 0.0, lost_before_ = 0.0;  // all that is dissipated, and that up to the step or sample before [J]
-  double corrected_ = 0.0;                 // sum of the decreases that were removed from it [J]
+  double lost_ = 0.0,
+         lost_before_ = 0.0;  // all that is dissipated, and that up to the step or sample before [J]
+  double corrected_ = 0.0;    // sum of the decreases that were removed from it [J]
   PeakForce peak_;
   ForceRecord forces_;                     // rates of the integrals that belong to contacts
   std::vector<LeftOutMomentum> left_out_;  // of every wire

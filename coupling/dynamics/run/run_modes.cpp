@@ -95,7 +95,8 @@ SmallMotions MotionRun::small_motions() {
   Pencil pencil{system_->jacobian(now, 0.0), system_->jacobian(now, weight)};
   for (std::size_t k = 0; k < pencil.A.value.size(); ++k)
     pencil.B.value[k] = (pencil.B.value[k] - pencil.A.value[k]) / weight;
-  for (numerics::SparseMatrix* m : {&pencil.A, &pencil.B}) numerics::scale(*m, VectorXd::Ones(size.size()), size);
+  for (numerics::SparseMatrix* m : {&pencil.A, &pencil.B})
+    numerics::scale(*m, VectorXd::Ones(size.size()), size);
   const numerics::GeneralEigen found = shifted_eigenvalues(pencil);
   // Largest coefficients of an equation.
   const VectorXd of_A = numerics::largest_of_rows(pencil.A), of_B = numerics::largest_of_rows(pencil.B);
@@ -108,7 +109,8 @@ SmallMotions MotionRun::small_motions() {
     if (lambda.imag() < 0.0 || !(std::abs(lambda) > slowest) || !std::isfinite(std::abs(lambda))) continue;
     const VectorXcd x = found.vectors.col(k);
     // What constraints make of mu = 0 in round-off is no solution of the equations themselves.
-    const VectorXd rest = (numerics::product(pencil.A, x) + lambda * numerics::product(pencil.B, x)).cwiseAbs();
+    const VectorXd rest =
+        (numerics::product(pencil.A, x) + lambda * numerics::product(pencil.B, x)).cwiseAbs();
     const VectorXd largest = (of_A + std::abs(lambda) * of_B) * x.cwiseAbs().maxCoeff();
     if (!(rest.array() <= trusted * largest.array()).all()) continue;
     fastest = std::max(fastest, std::abs(lambda));
@@ -146,7 +148,8 @@ ModeShape MotionRun::shape_of(const VectorXcd& x) {
       add({real.motor_rate[j], imaginary.motor_rate[j]}, arm.joints[at(j)].motor_inertia);
   }
   ModeShape shape;
-  shape.bodies_and_arms = Eigen::Map<const VectorXcd>(coordinates.data(), static_cast<Index>(coordinates.size()));
+  shape.bodies_and_arms =
+      Eigen::Map<const VectorXcd>(coordinates.data(), static_cast<Index>(coordinates.size()));
   for (std::size_t w = 0; w < rods_.size(); ++w) {
     Eigen::Matrix3Xcd& wire = shape.wires.emplace_back();
     if (motion_.wires[w].rod.quasi_static) continue;
@@ -172,7 +175,8 @@ std::vector<std::pair<std::string, double>> MotionRun::shares_of(const VectorXcd
       const Eigen::Vector3d shift = v.segment<3>(b.velocity()), turn = v.segment<3>(b.spin());
       const Eigen::Vector3d spin = b.body().properties.inertia * turn;
       for (int i = 0; i < 3; ++i) {
-        energy[motion_.bodies[k].name + " shift " + axes[at(i)]] += b.body().properties.mass * shift[i] * shift[i];
+        energy[motion_.bodies[k].name + " shift " + axes[at(i)]] +=
+            b.body().properties.mass * shift[i] * shift[i];
         energy[motion_.bodies[k].name + " turn " + axes[at(i)]] += turn[i] * spin[i];
       }
     }
@@ -183,7 +187,8 @@ std::vector<std::pair<std::string, double>> MotionRun::shares_of(const VectorXcd
     for (std::size_t w = 0; w < rods_.size(); ++w) {
       if (motion_.wires[w].rod.quasi_static) continue;
       for (int i = 0; i < rods_[w].vertices(); ++i)
-        energy[motion_.wires[w].name] += rods_[w].mass_of(i) * v.segment<3>(rods_[w].velocity_of(i)).squaredNorm();
+        energy[motion_.wires[w].name] +=
+            rods_[w].mass_of(i) * v.segment<3>(rods_[w].velocity_of(i)).squaredNorm();
     }
   }
   double sum = 0.0;

@@ -44,7 +44,8 @@ double MotionRun::signal(const MotionSignal& s) {
     case MotionSignal::Kind::speed: {
       const MovingFrame::State a = constraints_->frame_of(s.carriers[0], bodies_, s.poses[0]).state(y_);
       const MovingFrame::State b = constraints_->frame_of(s.carriers[1], bodies_, s.poses[1]).state(y_);
-      return s.kind == MotionSignal::Kind::distance ? (b.X_WF.p - a.X_WF.p).norm() : (b.linear - a.linear).norm();
+      return s.kind == MotionSignal::Kind::distance ? (b.X_WF.p - a.X_WF.p).norm()
+                                                    : (b.linear - a.linear).norm();
     }
   }
   return 0.0;
@@ -100,7 +101,8 @@ void MotionRun::restore_phases(std::span<const double>& memory) {
   for (const PhaseBeginning& begun : sums_.phases) {
     const std::vector<PhaseDrive>& drives = motion_.phases[at(begun.phase)].drives;
     for (std::size_t k = 0; k < drives.size(); ++k)
-      constraints_->restore_drive(drives[k].arm, drives[k].joint, drives[k].make(begun.time, begun.angles[k]));
+      constraints_->restore_drive(drives[k].arm, drives[k].joint,
+                                  drives[k].make(begun.time, begun.angles[k]));
   }
 }
 

@@ -18,7 +18,8 @@ constexpr double same_output = 1e-9;
 
 }  // namespace
 
-SensedReadings::SensedReadings(const Motion& motion, double output_interval) : output_interval_(output_interval) {
+SensedReadings::SensedReadings(const Motion& motion, double output_interval)
+    : output_interval_(output_interval) {
   for (const SensedSignal& s : motion.sensed) {
     signals_.emplace_back().what = &s;
     signals_.back().sight = s.make(motion);
@@ -26,7 +27,8 @@ SensedReadings::SensedReadings(const Motion& motion, double output_interval) : o
 }
 
 SensedReadings::Told SensedReadings::told(const Signal& signal, long reading) const {
-  const double time = std::max(0.0, static_cast<double>(reading) * signal.what->interval - signal.what->delay);
+  const double time =
+      std::max(0.0, static_cast<double>(reading) * signal.what->interval - signal.what->delay);
   const double outputs = time / output_interval_;
   const double whole = std::floor(outputs + same_output);
   const double share = outputs - whole;
@@ -79,7 +81,8 @@ const Vector3d& SensedReadings::last(int signal) const {
 
 void SensedReadings::save_state(std::vector<double>& memory) const {
   for (const Signal& s : signals_) {
-    memory.insert(memory.end(), {static_cast<double>(s.seen), static_cast<double>(s.read), s.first ? 1.0 : 0.0});
+    memory.insert(memory.end(),
+                  {static_cast<double>(s.seen), static_cast<double>(s.read), s.first ? 1.0 : 0.0});
     put_vector(memory, s.first.value_or(Vector3d::Zero()));
     put_vector(memory, s.last);
     memory.push_back(static_cast<double>(s.waiting.size()));

@@ -14,7 +14,8 @@ using Eigen::VectorXd;
 void MotionRun::make_rates() {
   const VectorXd before = std::exchange(rate_, VectorXd::Zero(y_.size()));
   for (const wire::RodPart& r : rods_) {
-    for (int i = 0; i < r.vertices(); ++i) rate_.segment<3>(r.position_of(i)) = y_.segment<3>(r.velocity_of(i));
+    for (int i = 0; i < r.vertices(); ++i)
+      rate_.segment<3>(r.position_of(i)) = y_.segment<3>(r.velocity_of(i));
     for (int e = 0; e + 1 < r.vertices(); ++e) rate_[r.angle_of(e)] = before[r.angle_of(e)];
   }
   for (const BodyPart& b : bodies_) {
@@ -28,7 +29,8 @@ void MotionRun::make_rates() {
   for (const wire::RodPart& r : rods_) {
     for (int i = 0; i < r.vertices(); ++i) {
       for (int k = 0; k < 3; ++k) {
-        if (!r.is_held(i, k)) rate_[r.velocity_of(i) + k] = -rows[r.velocity_of(i) + k] / r.model().inertia_of(i);
+        if (!r.is_held(i, k))
+          rate_[r.velocity_of(i) + k] = -rows[r.velocity_of(i) + k] / r.model().inertia_of(i);
       }
       if (r.constants().strands.act()) rate_.segment<2>(r.strand_of(i)) = -rows.segment<2>(r.strand_of(i));
     }

@@ -40,8 +40,8 @@ bool is_mirrored(const SymmetryPlane& plane, const MotionWire& wire) {
 bool is_mirrored(const SymmetryPlane& plane, const MotionBody& body) {
   if (body.robot || body.course_velocity) return false;
   const multibody::RigidBodyState& s = body.start;
-  return has_place(plane, s.position) && is_normal(plane, s.orientation.vec()) && has_motion(plane, s.velocity) &&
-         is_normal(plane, s.spin) && has_motion(plane, body.force) &&
+  return has_place(plane, s.position) && is_normal(plane, s.orientation.vec()) &&
+         has_motion(plane, s.velocity) && is_normal(plane, s.spin) && has_motion(plane, body.force) &&
          is_normal(plane, body.properties.inertia.col(plane.normal)) &&
          is_normal(plane, body.properties.inertia.row(plane.normal));
 }
@@ -66,9 +66,10 @@ bool is_mirrored(const SymmetryPlane& plane, const Motion& motion) {
 }  // namespace
 
 std::optional<int> symmetry_normal(const Motion& motion) {
-  const bool has_more = !motion.point_contacts.empty() || !motion.wire_pairs.empty() || !motion.arms.empty() ||
-                        !motion.welds.empty() || !motion.mounts.empty() || !motion.bushings.empty() ||
-                        !motion.law_wires.empty() || !motion.body_contacts.empty() || !motion.loads.empty();
+  const bool has_more = !motion.point_contacts.empty() || !motion.wire_pairs.empty() ||
+                        !motion.arms.empty() || !motion.welds.empty() || !motion.mounts.empty() ||
+                        !motion.bushings.empty() || !motion.law_wires.empty() ||
+                        !motion.body_contacts.empty() || !motion.loads.empty();
   if (motion.wires.empty() || has_more) return std::nullopt;
   for (const int normal : {2, 1, 0}) {
     const SymmetryPlane plane{normal, motion.wires.front().positions(normal, 0)};

@@ -24,7 +24,8 @@ inline std::string own_part(const std::string& html) {
 }
 
 /// What the browser reads from the first plot of this title after the first occurrence of `section`; null without one.
-inline nlohmann::json plot_of(const std::string& html, const std::string& title, const std::string& section = "") {
+inline nlohmann::json plot_of(const std::string& html, const std::string& title,
+                              const std::string& section = "") {
   const std::size_t begin = html.find(section);
   std::size_t at = begin == std::string::npos ? begin : html.find("<span>" + title + "</span>", begin);
   if (at == std::string::npos) return nullptr;

@@ -19,7 +19,11 @@ Paper small_paper() {
   return {"small",
           "Somebody: A paper & its title",
           "Somebody",
-          {{"Fig. 1", "Force", "The force grows.", "By a law.", {{"Force", {"displacement", "mm"}, {"force", "N"}}}},
+          {{"Fig. 1",
+            "Force",
+            "The force grows.",
+            "By a law.",
+            {{"Force", {"displacement", "mm"}, {"force", "N"}}}},
            {"Table 2", "Numbers", "A number.", "Read back.", {}, {}, nullptr, "a group"}},
           {{"readings", "never printed"}}};
 }
@@ -29,8 +33,8 @@ FigureResult curves() {
   result.curves = {{"printed", Origin::published, {0.0, 1.0, 2.0}, {0.0, 1.0, 4.0}, 0, 0.1},
                    {"computed", Origin::computed, {0.0, 1.0, 2.0}, {0.0, 50.0, 100.0}}};
   result.findings = {"It is stiff."};
-  result.rows = {{"group", "Fig. 1: force at 2 mm", "N", "Somebody, Table 1", validation::Kind::published_measurement,
-                  4.0, 100.0, validation::Limit::relative(0.1)}};
+  result.rows = {{"group", "Fig. 1: force at 2 mm", "N", "Somebody, Table 1",
+                  validation::Kind::published_measurement, 4.0, 100.0, validation::Limit::relative(0.1)}};
   return result;
 }
 
@@ -38,9 +42,10 @@ TEST(PaperPage, ShowsTextMethodCurvesComparisonAndWhatIsLost) {
   FigureResult table;
   table.table = {{"quantity", "printed"}, {{"mass", "8.9"}}};
   const std::string html = paper_page(small_paper(), {curves(), table}, "0");
-  expect_all(html, {"Fig. 1: Force", "The text: The force grows.", "Made here: By a law.", "It is stiff.",
-                    "A paper &amp; its title", "Table 2: Numbers",
-                    "snare validate compares this in its group &quot;a group&quot;", "What is lost, and why"});
+  expect_all(html,
+             {"Fig. 1: Force", "The text: The force grows.", "Made here: By a law.", "It is stiff.",
+              "A paper &amp; its title", "Table 2: Numbers",
+              "snare validate compares this in its group &quot;a group&quot;", "What is lost, and why"});
   EXPECT_EQ(row_of(html, {"readings"}), (std::vector<std::string>{"readings", "never printed"}));
   EXPECT_EQ(row_of(html, {"mass"}), (std::vector<std::string>{"mass", "8.9"}));
   EXPECT_EQ(row_of(html, {"force at 2 mm"}).at(6), "OUT");

@@ -71,10 +71,12 @@ TEST(ReportPage, EscapesUserTextEverywhere) {
 
   const std::string html = page.html();
   EXPECT_EQ(html.find("<script>alert"), std::string::npos);
-  EXPECT_NE(html.find("<title>&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt; &amp; &quot;quoted&quot;</title>"),
-            std::string::npos);
+  EXPECT_NE(
+      html.find("<title>&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt; &amp; &quot;quoted&quot;</title>"),
+      std::string::npos);
   EXPECT_EQ(data_of_plot(html)["curves"][0]["name"], attack) << "the plot shows the text as it was written";
-  EXPECT_EQ(count(html, "</script>"), 3U) << "data of one plot, D3 and the plot script; no text may end one early";
+  EXPECT_EQ(count(html, "</script>"), 3U)
+      << "data of one plot, D3 and the plot script; no text may end one early";
 }
 
 TEST(ReportPage, AcceptsTextThatIsNotUtf8) {

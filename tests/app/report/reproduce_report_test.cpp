@@ -32,14 +32,16 @@ void stop(identification::Prediction& prediction, const std::string& why) {
 }
 
 TEST(ReproduceReport, SaysTheErrorsInWords) {
-  expect_all(page_of(reproduction()),
-             {("The declared model with nothing fitted differs from the published force by 64.5 N rms over all "
-               "positions, 32.3 times its range and 645 times the published scatter. A solid wire."),
-              ("The best fit with 1 fitted number differs from the published force by 0.200 N rms over all positions, "
-               "10.0 % of its range and 2.0 times the published scatter."),
-              ("No verdict: the tracing is missing. The best fit is 2.0 times the published scatter away from the "
-               "published curves."),
-              "<li>the range is assumed</li>", "Written by snare 0.1.0. The numbers are in reproduce.json"});
+  expect_all(
+      page_of(reproduction()),
+      {("The declared model with nothing fitted differs from the published force by 64.5 N rms over all "
+        "positions, 32.3 times its range and 645 times the published scatter. A solid wire."),
+       ("The best fit with 1 fitted number differs from the published force by 0.200 N rms over all "
+        "positions, "
+        "10.0 % of its range and 2.0 times the published scatter."),
+       ("No verdict: the tracing is missing. The best fit is 2.0 times the published scatter away from the "
+        "published curves."),
+       "<li>the range is assumed</li>", "Written by snare 0.1.0. The numbers are in reproduce.json"});
 }
 
 // An error within the scatter is no verdict: the tracing judges, and no other sentence contradicts it.
@@ -61,16 +63,19 @@ TEST(ReproduceReport, ListsErrorsAndParameters) {
             (Strings{position, "declared model", "64.5", "32.3 \u00d7", "645", "102", "2.00", "2"}));
   EXPECT_EQ(row_of(html, {position, "best fit"}),
             (Strings{position, "best fit", "0.200", "10.0 %", "2.0", "2.20", "2.00", "2"}));
-  EXPECT_EQ(row_of(html, {"all", "best fit"}), (Strings{"all", "best fit", "0.200", "10.0 %", "2.0", "", "", ""}));
-  EXPECT_EQ(row_of(html, {"wire.length_mm"}), (Strings{"wire.length_mm", "mm", "180", "175.123 \u00b1 0.012"}));
+  EXPECT_EQ(row_of(html, {"all", "best fit"}),
+            (Strings{"all", "best fit", "0.200", "10.0 %", "2.0", "", "", ""}));
+  EXPECT_EQ(row_of(html, {"wire.length_mm"}),
+            (Strings{"wire.length_mm", "mm", "180", "175.123 \u00b1 0.012"}));
   EXPECT_EQ(row_of(html, {"diameter"}), (Strings{"diameter", "1.5", "mm"}));
   EXPECT_EQ(row_of(html, {"bending stiffness"}), (Strings{"bending stiffness", "0.048", "N m\u00b2"}));
 }
 
 TEST(ReproduceReport, GivesThePublishedLaw) {
-  EXPECT_TRUE(contains(page_of(reproduction()),
-                       "Published: F = A d\u00b2 + B d + C with A = 0 N/m\u00b2, B = 1000 N/m, C = 0 N, R\u00b2 = "
-                       "0.970874; scatter \u03c3 = 0.100 N. Pushed from first touch to 2 mm."));
+  EXPECT_TRUE(
+      contains(page_of(reproduction()),
+               "Published: F = A d\u00b2 + B d + C with A = 0 N/m\u00b2, B = 1000 N/m, C = 0 N, R\u00b2 = "
+               "0.970874; scatter \u03c3 = 0.100 N. Pushed from first touch to 2 mm."));
   Reproduction result = reproduction();
   result.experiment.series[0].law.reset();
   result.experiment.series[0].readings = identification::Readings{{0.0, 1e-3, 2e-3}, {0.0, 1.0, 2.0}, {}};
@@ -83,7 +88,8 @@ TEST(ReproduceReport, GivesThePublishedLaw) {
 TEST(ReproduceReport, DrawsTheBestModelAtAllPositions) {
   const json force = plot_of(page_of(reproduction()), "Force at all positions");
   EXPECT_EQ(curve_of(force, position + " published")["y"], json({0.0, 1.0, 2.0}));
-  EXPECT_EQ(curve_of(force, position + " published")["lower"], json({-0.2, 0.8, 1.8})) << "two standard deviations";
+  EXPECT_EQ(curve_of(force, position + " published")["lower"], json({-0.2, 0.8, 1.8}))
+      << "two standard deviations";
   EXPECT_EQ(curve_of(force, position + " best fit")["y"], json({0.2, 1.2, 2.2}));
   const json stiffness = plot_of(page_of(reproduction()), "Tangent stiffness at all positions");
   EXPECT_EQ(curve_of(stiffness, position + " published")["y"], json({1.0, 1.0, 1.0})) << "1000 N/m, in N/mm";
@@ -151,9 +157,11 @@ TEST(ReproduceReport, ShowsWhatWasNotComputedAsADash) {
   Reproduction result = reproduction();
   result.models[1].predictions.clear();
   const std::string html = page_of(result);
-  expect_all(html, {"The best fit was not computed.", "The best fit was not computed here.", "The declared model is"});
-  EXPECT_EQ(row_of(html, {position, "best fit (incomplete)"}),
-            (Strings{position, "best fit (incomplete)", "\u2013", "\u2013", "\u2013", "\u2013", "2.00", "2"}));
+  expect_all(html, {"The best fit was not computed.", "The best fit was not computed here.",
+                    "The declared model is"});
+  EXPECT_EQ(
+      row_of(html, {position, "best fit (incomplete)"}),
+      (Strings{position, "best fit (incomplete)", "\u2013", "\u2013", "\u2013", "\u2013", "2.00", "2"}));
   EXPECT_FALSE(contains(html, "Shapes of the wire, best fit"));
   EXPECT_TRUE(contains(page_of(Reproduction{}), "No model was computed."));
 }
@@ -163,7 +171,8 @@ TEST(ReproduceReport, SaysWhatTheTracingFound) {
   EXPECT_FALSE(contains(page_of(result), "What the tracing says"));
   result.trace = explained_trace();
   const std::string html = page_of(result);
-  expect_all(html, {"<p class=\"callout good\">Explained. plasticity", "To measure next: push at s = 30 mm."});
+  expect_all(html,
+             {"<p class=\"callout good\">Explained. plasticity", "To measure next: push at s = 30 mm."});
 }
 
 TEST(ReproduceReport, NamesPlotAndCurveOfAValueThatIsNotFinite) {
@@ -173,7 +182,8 @@ TEST(ReproduceReport, NamesPlotAndCurveOfAValueThatIsNotFinite) {
     page_of(result);
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "plot 'Tension along the wire, best fit', curve 'd = 2 mm': y[2] = inf, must be finite");
+    EXPECT_STREQ(error.what(),
+                 "plot 'Tension along the wire, best fit', curve 'd = 2 mm': y[2] = inf, must be finite");
   }
 }
 

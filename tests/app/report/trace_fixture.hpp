@@ -16,8 +16,8 @@ inline identification::Experiment traced_experiment() {
   return experiment;
 }
 
-inline identification::Series series(const std::string& name, double position, const std::vector<double>& force,
-                                     const std::vector<double>& time) {
+inline identification::Series series(const std::string& name, double position,
+                                     const std::vector<double>& force, const std::vector<double>& time) {
   identification::Series s;
   s.name = name;
   s.test.contact_position = position;
@@ -44,7 +44,8 @@ inline identification::Candidate candidate(const char* effect, double z, double 
 inline identification::Trace explained_trace() {
   using identification::FittedNumber;
   identification::Trace t;
-  t.series = {series("s40", 0.040, {0.1, 0.6, 2.9}, {}), series("s65", 0.065, {0.0, 0.5, 2.0}, {0.0, 5.0, 10.0})};
+  t.series = {series("s40", 0.040, {0.1, 0.6, 2.9}, {}),
+              series("s65", 0.065, {0.0, 0.5, 2.0}, {0.0, 5.0, 10.0})};
   t.series[0].law = identification::QuadraticLaw{719880.0, -13.578, 0.0533, 0.9976, 3e-3};
   t.heldout = {false, true};
   t.noise.sigma = {0.148, 0.148};
@@ -54,7 +55,8 @@ inline identification::Trace explained_trace() {
   t.declared = {348.4, 29.6, 6107038.0, {}, {}, {}};
   const FittedNumber base{"wire.axial_stiffness_N", "N", 341059.0, 17216.4, 617.0, 16047.2, 18470.9, false};
   t.base = {0.1826, 0.0155, 1.668, {}, {base}, {}};
-  const FittedNumber stiffness{"wire.axial_stiffness_N", "N", 341059.0, 27023.7, 2122.0, 23168.6, 31520.3, false};
+  const FittedNumber stiffness{
+      "wire.axial_stiffness_N", "N", 341059.0, 27023.7, 2122.0, 23168.6, 31520.3, false};
   const FittedNumber stress{"plasticity.yield_stress_MPa", "MPa", std::nan(""), 181.8, 20.0, 147.5, {}, true};
   t.final = {0.1622, 0.0138, 1.331, {}, {stiffness, stress}, {}};
   t.declared_predictions = {prediction({0.0, 20.0, 301.5}), prediction({0.0, 0.6, 2.1})};

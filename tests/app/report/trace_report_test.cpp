@@ -26,17 +26,19 @@ std::string page_of(const Trace& trace) {
 
 TEST(TraceReport, SaysWhatWasFound) {
   const std::string html = page_of(explained_trace());
-  expect_all(html, {"<h1>Push on a wire</h1>",
-                    ("<p class=\"callout good\">Explained. plasticity: the metal of the wire yields. The error falls "
-                     "from 0.183 N to 0.162 N.</p>"),
-                    "348 N rms", "nothing fitted; 2400 times the noise; 29.6 times the force&#39;s range",
-                    "0.183 N rms", "1 number fitted; 1.2 times the noise", "0.162 N rms", "0.148 N",
-                    "with plasticity; 1.1 times the noise; 1.4 % of the force&#39;s range",
-                    "the scatter that the published R\u00b2 implies", "0.301 \u2192 0.205 N",
-                    "<div class=\"value\">plasticity</div><div class=\"remark\">sits in: wire</div>",
-                    "push at s = 30 mm", "It separates plasticity and span.",
-                    "differ by 1.25 N rms, 8.4 times the noise", "Written by snare 0.1.0.",
-                    "at most 0.00627 N, 4.2 % of the noise", "Computed in 8.5 s: base fit 3.6 s, intervals 4.8 s."});
+  expect_all(
+      html,
+      {"<h1>Push on a wire</h1>",
+       ("<p class=\"callout good\">Explained. plasticity: the metal of the wire yields. The error falls "
+        "from 0.183 N to 0.162 N.</p>"),
+       "348 N rms", "nothing fitted; 2400 times the noise; 29.6 times the force&#39;s range", "0.183 N rms",
+       "1 number fitted; 1.2 times the noise", "0.162 N rms", "0.148 N",
+       "with plasticity; 1.1 times the noise; 1.4 % of the force&#39;s range",
+       "the scatter that the published R\u00b2 implies", "0.301 \u2192 0.205 N",
+       "<div class=\"value\">plasticity</div><div class=\"remark\">sits in: wire</div>", "push at s = 30 mm",
+       "It separates plasticity and span.", "differ by 1.25 N rms, 8.4 times the noise",
+       "Written by snare 0.1.0.", "at most 0.00627 N, 4.2 % of the noise",
+       "Computed in 8.5 s: base fit 3.6 s, intervals 4.8 s."});
   EXPECT_FALSE(contains(html, "Where the residual comes from"));
   EXPECT_FALSE(contains(html, "Interrupted"));
 }
@@ -64,16 +66,20 @@ TEST(TraceReport, NamesEveryCandidateWithItsNumbers) {
   EXPECT_EQ(row_of(html, {"plasticity", "the metal of the wire yields"}),
             (Strings{"plasticity", "the metal of the wire yields", "wire", "5.76", "2.2e-07", "\u2013"}));
   EXPECT_EQ(row_of(html, {"span", "the distance of the mounts is not as declared"}),
-            (Strings{"span", "the distance of the mounts is not as declared", "geometry", "-0.514", "1", "0.0362 mm"}));
-  EXPECT_EQ(row_of(html, {"plasticity", "0.162"}),
-            (Strings{"plasticity", "0.162", "-35.9", "yield stress [MPa]", "182", "145 to 227", "yes", "yes"}));
+            (Strings{"span", "the distance of the mounts is not as declared", "geometry", "-0.514", "1",
+                     "0.0362 mm"}));
+  EXPECT_EQ(
+      row_of(html, {"plasticity", "0.162"}),
+      (Strings{"plasticity", "0.162", "-35.9", "yield stress [MPa]", "182", "145 to 227", "yes", "yes"}));
   EXPECT_EQ(row_of(html, {"span", "0.180"}),
             (Strings{"span", "0.180", "4.20", "span [mm]", "9", "up to 9.5", "no", "\u2013"}));
   EXPECT_TRUE(row_of(html, {"force_gain"}).empty()) << "what these data cannot show has no score";
-  expect_all(html, {"<li>span: mount.span_mm = 9 mm</li>",
-                    "<li>force_gain (the load cell&#39;s calibration factor is wrong): the fitted numbers change the "
-                    "curves in the same way</li>",
-                    "<li>span, force_gain and axial_stiffness; of these the model has axial_stiffness already</li>"});
+  expect_all(
+      html,
+      {"<li>span: mount.span_mm = 9 mm</li>",
+       "<li>force_gain (the load cell&#39;s calibration factor is wrong): the fitted numbers change the "
+       "curves in the same way</li>",
+       "<li>span, force_gain and axial_stiffness; of these the model has axial_stiffness already</li>"});
 }
 
 TEST(TraceReport, TellsEveryReasonOnce) {
@@ -87,16 +93,17 @@ TEST(TraceReport, TellsEveryReasonOnce) {
 
 TEST(TraceReport, ShowsTheParametersAndTests) {
   const std::string html = page_of(explained_trace());
-  EXPECT_EQ(
-      row_of(html, {"plasticity.yield_stress_MPa"}),
-      (Strings{"plasticity.yield_stress_MPa", "MPa", "\u2013", "\u2013", "\u2013", "181.8", "from 147.5", "profile"}));
+  EXPECT_EQ(row_of(html, {"plasticity.yield_stress_MPa"}),
+            (Strings{"plasticity.yield_stress_MPa", "MPa", "\u2013", "\u2013", "\u2013", "181.8",
+                     "from 147.5", "profile"}));
   EXPECT_EQ(row_of(html, {"wire.axial_stiffness_N"}),
-            (Strings{"wire.axial_stiffness_N", "N", "341059", "17216", "16047 to 18471", "27024", "23169 to 31520",
-                     "curvature"}));
+            (Strings{"wire.axial_stiffness_N", "N", "341059", "17216", "16047 to 18471", "27024",
+                     "23169 to 31520", "curvature"}));
   EXPECT_EQ(row_of(html, {"Runs, p: does the residual keep its sign longer than by chance?"}),
             (Strings{"Runs, p: does the residual keep its sign longer than by chance?", "0.35", "0.88"}));
-  EXPECT_EQ(row_of(html, {"Lack of fit, p: is the residual larger than the noise of a reading?"}),
-            (Strings{"Lack of fit, p: is the residual larger than the noise of a reading?", "7.9e-06", "0.0099"}));
+  EXPECT_EQ(
+      row_of(html, {"Lack of fit, p: is the residual larger than the noise of a reading?"}),
+      (Strings{"Lack of fit, p: is the residual larger than the noise of a reading?", "7.9e-06", "0.0099"}));
   EXPECT_TRUE(contains(html, "What the base model leaves is more than noise."));
 }
 
@@ -163,15 +170,16 @@ TEST(TraceReport, SaysWhenNothingWasFound) {
   Trace trace = unexplained_trace();
   trace.from_laws = false;
   const std::string html = page_of(trace);
-  expect_all(html,
-             {("<p class=\"callout bad\">Not explained: the catalogue has no effect that brings the error of 0.183 "
-               "N down to the noise. No single function of one channel carries over from series to series; the "
-               "pusher comes nearest (40 %).</p>"),
-              ("<div class=\"value\">not explained</div><div class=\"remark\">not settled by plasticity and "
-               "gravity</div>"),
-              "the base model, nothing added", "0.500 \u2192 0.700 N", "the effect makes it worse",
-              "None carries over well enough", "base model, also final",
-              "plasticity and gravity. With them the error would be 0.233 N rms."});
+  expect_all(
+      html,
+      {("<p class=\"callout bad\">Not explained: the catalogue has no effect that brings the error of 0.183 "
+        "N down to the noise. No single function of one channel carries over from series to series; the "
+        "pusher comes nearest (40 %).</p>"),
+       ("<div class=\"value\">not explained</div><div class=\"remark\">not settled by plasticity and "
+        "gravity</div>"),
+       "the base model, nothing added", "0.500 \u2192 0.700 N", "the effect makes it worse",
+       "None carries over well enough", "base model, also final",
+       "plasticity and gravity. With them the error would be 0.233 N rms."});
   EXPECT_EQ(row_of(html, {"pusher"}),
             (Strings{"pusher", "the pusher lags behind the travel [mm]", "40 %", "55 %", "no"}));
   EXPECT_EQ(row_of(html, {"wire", "changes the bending stiffness"}),
@@ -217,7 +225,8 @@ TEST(TraceReport, SaysWhyAnEffectAloneInItsClassIsNotDecided) {
   trace.decided = false;
   trace.final_tests = {0.88, 0.083, 0.0099, false};  // three together: 3 %
   trace.final_tests.left.upper = 0.1;                // more than the tolerance
-  expect_all(page_of(trace), {"likely, but not settled", "Noise leaves as much less than once in twenty times"});
+  expect_all(page_of(trace),
+             {"likely, but not settled", "Noise leaves as much less than once in twenty times"});
   trace.final_tests.lack_of_fit = 0.5;
   expect_all(page_of(trace), {"likely, but not settled", "Conditions left out are not predicted better"});
 }
@@ -227,8 +236,8 @@ TEST(TraceReport, SaysWhenNothingIsMissing) {
   trace.selected.clear();
   trace.significant = false;
   trace.kind = identification::VerdictKind::nothing_missing;
-  expect_all(page_of(trace),
-             {"none missing", "no effect is missing.", "What the base model leaves cannot be told from noise."});
+  expect_all(page_of(trace), {"none missing", "no effect is missing.",
+                              "What the base model leaves cannot be told from noise."});
 }
 
 TEST(TraceReport, SaysWhenWhatMayBeMissingHasNoName) {
@@ -245,9 +254,10 @@ TEST(TraceReport, SaysWhenWhatMayBeMissingHasNoName) {
   trace.base_tests = {.lack_of_fit = 1e-9, .against_replicates = true, .rmse = 1.2, .noise = 0.4};
   trace.base_tests.left = {.rmse = 1.1, .upper = 1.5, .p = 1e-9};
   trace.remaining = {1.1, 1.5, 1.0, ""};
-  expect_all(page_of(trace), {"some 1.1 N of it not noise, less than the tolerance of 1.3 N",
-                              "it may be 1.5 N (1.2 % of the largest force), and no effect of the catalogue lowers",
-                              "What the base model leaves is not worth a name."});
+  expect_all(page_of(trace),
+             {"some 1.1 N of it not noise, less than the tolerance of 1.3 N",
+              "it may be 1.5 N (1.2 % of the largest force), and no effect of the catalogue lowers",
+              "What the base model leaves is not worth a name."});
 }
 
 TEST(TraceReport, SaysWhatIsLeftOfAPartialAnswer) {
@@ -287,9 +297,12 @@ TEST(TraceReport, ShowsWhatAnInterruptedRunKnows) {
   trace.next.reset();
   const std::string html = page_of(trace);
   EXPECT_TRUE(contains(html, "Interrupted: the page shows what was known by then"));
-  EXPECT_EQ(curve_of(plot_of(html, "s40, pushed at 40 mm"), "base model, also final")["y"], json({0.0, 0.8, 2.7}));
-  EXPECT_EQ(plot_of(html, "s65, pushed at 65 mm (held out)")["curves"].size(), 2U) << "measured and base model";
-  EXPECT_EQ(plot_of(html, "Measured minus base model, against travel")["curves"].size(), 2U) << "no noise to draw";
+  EXPECT_EQ(curve_of(plot_of(html, "s40, pushed at 40 mm"), "base model, also final")["y"],
+            json({0.0, 0.8, 2.7}));
+  EXPECT_EQ(plot_of(html, "s65, pushed at 65 mm (held out)")["curves"].size(), 2U)
+      << "measured and base model";
+  EXPECT_EQ(plot_of(html, "Measured minus base model, against travel")["curves"].size(), 2U)
+      << "no noise to draw";
   for (const char* section :
        {"What could be missing", "What to measure next", "Noise of a reading", "Held-out error"}) {
     EXPECT_FALSE(contains(html, section)) << section;
@@ -307,9 +320,10 @@ TEST(TraceReport, ShowsWhatIsNotKnownAsADash) {
   trace.heldout_rmse = {nan, nan};
   const std::string html = own_part(page_of(trace));
   EXPECT_FALSE(contains(html, "nan") || contains(html, "NaN"));
-  expect_all(html,
-             {"<div class=\"label\">Error as declared</div><div class=\"value\">\u2013</div>", "0.500 \u2192 0.700 N"});
-  EXPECT_EQ(row_of(html, {"Runs, p: does the residual keep its sign longer than by chance?"}).back(), "\u2013");
+  expect_all(html, {"<div class=\"label\">Error as declared</div><div class=\"value\">\u2013</div>",
+                    "0.500 \u2192 0.700 N"});
+  EXPECT_EQ(row_of(html, {"Runs, p: does the residual keep its sign longer than by chance?"}).back(),
+            "\u2013");
   EXPECT_EQ(row_of(html, {"wire.axial_stiffness_N"})[5], "\u2013");
   EXPECT_EQ(row_of(html, {"plasticity", "0.162"})[2], "\u2013");
   EXPECT_FALSE(contains(html, "Dividing the wire into finite pieces"));
@@ -324,7 +338,8 @@ TEST(TraceReport, NamesPlotAndCurveOfAValueThatIsNotFinite) {
     page_of(trace);
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "plot 's40, pushed at 40 mm', curve 'final model': y[1] = nan, must be finite");
+    EXPECT_STREQ(error.what(),
+                 "plot 's40, pushed at 40 mm', curve 'final model': y[1] = nan, must be finite");
   }
 }
 

@@ -15,8 +15,10 @@ void expect_derivatives(const ContactLaw& law, double d, double rate) {
   const Eigen::Vector3d at = law(d, rate);
   const double h = 1e-7;
   // Differences of a smooth function over 1e-7 of its argument: 1e-6 of its size.
-  EXPECT_NEAR((law(d + h, rate).x() - law(d - h, rate).x()) / (2.0 * h), at.y(), 1e-6 * (std::abs(at.y()) + 1.0));
-  EXPECT_NEAR((law(d, rate + h).x() - law(d, rate - h).x()) / (2.0 * h), at.z(), 1e-6 * (std::abs(at.z()) + 1.0));
+  EXPECT_NEAR((law(d + h, rate).x() - law(d - h, rate).x()) / (2.0 * h), at.y(),
+              1e-6 * (std::abs(at.y()) + 1.0));
+  EXPECT_NEAR((law(d, rate + h).x() - law(d, rate - h).x()) / (2.0 * h), at.z(),
+              1e-6 * (std::abs(at.z()) + 1.0));
 }
 
 TEST(ContactLaw, DerivativesMatchDifferences) {
@@ -72,7 +74,8 @@ TEST(ContactLaw, StretchedWireOfHonda) {
   EXPECT_NEAR(exact(10 * mm, 0.0).x() / linear(10 * mm, 0.0).x(), 1.74, 5e-3);
   // Without slack: the cubic K x^3/l^2, to the next order (x/l)^2 (3/4).
   const ContactLaw cubic = stretched_wire_law(k, 90 * mm, 90 * mm);
-  EXPECT_NEAR(cubic(1 * mm, 0.0).x(), k * std::pow(1 * mm, 3) / std::pow(90 * mm, 2), 2e-4 * cubic(1 * mm, 0.0).x());
+  EXPECT_NEAR(cubic(1 * mm, 0.0).x(), k * std::pow(1 * mm, 3) / std::pow(90 * mm, 2),
+              2e-4 * cubic(1 * mm, 0.0).x());
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ TEST(VertexSlope, DerivativesByTheRestLengthsMatchDifferences) {
   const double d = 1e-7;
   const Vector3d by_before =
       (vertex_slope<3>(e0, e1, h0 + d, h1).u - vertex_slope<3>(e0, e1, h0 - d, h1).u) / (2.0 * d);
-  const Vector3d by_after = (vertex_slope<3>(e0, e1, h0, h1 + d).u - vertex_slope<3>(e0, e1, h0, h1 - d).u) / (2.0 * d);
+  const Vector3d by_after =
+      (vertex_slope<3>(e0, e1, h0, h1 + d).u - vertex_slope<3>(e0, e1, h0, h1 - d).u) / (2.0 * d);
   // Round-off 1e-16/1e-7 and (d/h)^2, 2e-10 of derivatives of the order of 1/h.
   EXPECT_LT((slope.by_before - by_before).norm(), 1e-7 / h0);
   EXPECT_LT((slope.by_after - by_after).norm(), 1e-7 / h1);

@@ -46,13 +46,15 @@ TEST(ForceTable, IsExactForCubicsAndMirrors) {
   }
   EXPECT_TRUE(table.proven_monotone());
   EXPECT_TRUE(table.at(0.04 * span, 0.3 * span, 0.002 * span, Outside::extrapolate).extrapolated);
-  EXPECT_THROW(static_cast<void>(table.at(0.01 * span, 0.1 * span, 0.002 * span, Outside::refuse)), std::domain_error);
+  EXPECT_THROW(static_cast<void>(table.at(0.01 * span, 0.1 * span, 0.002 * span, Outside::refuse)),
+               std::domain_error);
 }
 
 /// A loose wire's force in shape: stiffer towards the mount and with less slack, so steeply that tangents beyond the range become negative.
 /// softening: falls at the end of the travel.
 ForceTable steep_table(bool mirrored, double softening = 0.0) {
-  const ForceTable::Axes axes{{{0.0, 0.004, 0.009, 0.015, 0.02}, {0.2, 0.3, 0.4, 0.5}, {0.001, 0.002, 0.003}}};
+  const ForceTable::Axes axes{
+      {{0.0, 0.004, 0.009, 0.015, 0.02}, {0.2, 0.3, 0.4, 0.5}, {0.001, 0.002, 0.003}}};
   std::vector<double> values, slopes;
   for (const double e : axes[2]) {
     for (const double s : axes[1]) {
@@ -98,12 +100,16 @@ TEST(ForceTable, ContinuationNeitherAttractsNorFalls) {
 TEST(ForceTable, ContinuationIsLinearAndContinuous) {
   const ForceTable table = steep_table(true);
   constexpr double h = 1e-6;
-  const auto force = [&](double d, double s, double e) { return table.at(d, s, e, Outside::extrapolate).force; };
+  const auto force = [&](double d, double s, double e) {
+    return table.at(d, s, e, Outside::extrapolate).force;
+  };
   for (const double d : {0.001, 0.007, 0.02}) {
     // Differences inside, at the edge, of second order: h^2 times third derivatives of some 1e3 times the force.
     const double f = force(d, 0.2, 0.003);
-    const double by_s = (-3.0 * f + 4.0 * force(d, 0.2 + h, 0.003) - force(d, 0.2 + 2.0 * h, 0.003)) / (2.0 * h);
-    const double by_e = (3.0 * f - 4.0 * force(d, 0.2, 0.003 - h) + force(d, 0.2, 0.003 - 2.0 * h)) / (2.0 * h);
+    const double by_s =
+        (-3.0 * f + 4.0 * force(d, 0.2 + h, 0.003) - force(d, 0.2 + 2.0 * h, 0.003)) / (2.0 * h);
+    const double by_e =
+        (3.0 * f - 4.0 * force(d, 0.2, 0.003 - h) + force(d, 0.2, 0.003 - 2.0 * h)) / (2.0 * h);
     EXPECT_NEAR(force(d, 0.15, 0.003), f - 0.05 * by_s, 1e-7 * f);
     EXPECT_NEAR(force(d, 0.2, 0.0031), f + 1e-4 * by_e, 1e-7 * f);
     EXPECT_NEAR(force(d, 0.85, 0.003), force(d, 0.15, 0.003), 1e-13);

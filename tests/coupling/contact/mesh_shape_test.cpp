@@ -83,7 +83,8 @@ TEST_F(MeshFiles, WrongOnesAreNamedWithTheirLine) {
       {"edge.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n",
        "edge.off:5: mesh = 2, must be the number of the face's corners"},
   };
-  for (const auto& [name, text, message] : wrong) EXPECT_THAT(complaint(name, text), HasSubstr(message)) << name;
+  for (const auto& [name, text, message] : wrong)
+    EXPECT_THAT(complaint(name, text), HasSubstr(message)) << name;
   test::write_mesh(folder_ / "cut_binary.stl", cuboid(1.0, 1.0, 1.0), 1.0);
   fs::resize_file(folder_ / "cut_binary.stl", 400);
   EXPECT_THROW((void)read_triangle_mesh(folder_ / "cut_binary.stl", 1.0), base::InputError);
@@ -96,15 +97,18 @@ TEST(MeshShapes, WrongSurfacesAreNamedWithTriangleAndEdge) {
   };
   TriangleMesh hole = cuboid(1.0, 1.0, 1.0);
   hole.triangles.erase(hole.triangles.begin() + 3);
-  EXPECT_THAT(said(hole),
-              HasSubstr("cuboid: mesh edge of points 5, 6 = triangle 2, must have a triangle on its other side too"));
+  EXPECT_THAT(
+      said(hole),
+      HasSubstr("cuboid: mesh edge of points 5, 6 = triangle 2, must have a triangle on its other side too"));
   TriangleMesh flipped = cuboid(1.0, 1.0, 1.0);
   std::swap(flipped.triangles[4][0], flipped.triangles[4][1]);
-  EXPECT_THAT(said(flipped),
-              HasSubstr("mesh edge of points 1, 4 = triangles 4 and 5, must be run along in opposite directions"));
+  EXPECT_THAT(
+      said(flipped),
+      HasSubstr("mesh edge of points 1, 4 = triangles 4 and 5, must be run along in opposite directions"));
   TriangleMesh inside_out = cuboid(1.0, 1.0, 1.0);
   for (auto& t : inside_out.triangles) std::swap(t[0], t[1]);
-  EXPECT_THAT(said(inside_out), HasSubstr("mesh = volume -1 m^3, must face outward: it is turned inside out"));
+  EXPECT_THAT(said(inside_out),
+              HasSubstr("mesh = volume -1 m^3, must face outward: it is turned inside out"));
   TriangleMesh degenerate = cuboid(1.0, 1.0, 1.0);
   degenerate.points.emplace_back(degenerate.points[0]);
   degenerate.triangles.push_back({0, 1, 8});
@@ -207,7 +211,8 @@ TEST(MeshShapes, TessellatedShaftIsTheShaftWithinItsTessellation) {
     EXPECT_EQ(mesh.contains(p), d < 0.0) << p.transpose();
     inside += d < 0.0 ? 1 : 0;
     if (exact > 2e-3) {
-      EXPECT_LT((mesh.at(p).normal - shaft->at(p).normal).norm(), 2.0 * std::numbers::pi / around) << p.transpose();
+      EXPECT_LT((mesh.at(p).normal - shaft->at(p).normal).norm(), 2.0 * std::numbers::pi / around)
+          << p.transpose();
     }
   }
   EXPECT_GT(inside, 20);

@@ -58,7 +58,8 @@ TEST(ShapePieces, ShaftAndCamHaveEachAGapAndANormalInTheirCorner) {
     // Where a wire seats: its radius off the shaft, and off the cone (of 45 degrees, or the flat underside).
     const double below = underside > 0.0 ? r * std::tan(pi / 8.0) : r;
     const Vector3d seat(g.shaft_radius + r, 0.0, g.shaft_length - below);
-    const Vector3d cone = underside > 0.0 ? Vector3d(std::sqrt(0.5), 0.0, -std::sqrt(0.5)) : Vector3d(0.0, 0.0, -1.0);
+    const Vector3d cone =
+        underside > 0.0 ? Vector3d(std::sqrt(0.5), 0.0, -std::sqrt(0.5)) : Vector3d(0.0, 0.0, -1.0);
     const DistanceField shaft = pieces[0]->at(seat);
     const DistanceField cam = pieces[1]->at(seat);
     EXPECT_NEAR(shaft.distance, r, 1e-15);
@@ -77,8 +78,9 @@ TEST(ShapePieces, TheirLeastDistanceIsTheSolids) {
       {"cup", cup({.inner_radius = 0.5, .depth = 0.6, .thickness = 0.2, .rounding = 0.05, .fillet = 0.1})},
       {"thin cup", cup({.inner_radius = 0.5, .depth = 0.6, .thickness = 0.01})},
       {"flanges", std::make_shared<RevolvedShape>(flanged_shaft())},
-      {"beads", std::make_shared<RevolvedShape>(Profile(
-                    {0.0, -0.5}, {{{0.5, 0.0}, 2.0}, {{0.3, 0.4}, 2.0}, {{0.5, 0.8}, 2.0}, {{0.0, 1.3}, 2.0}}))}};
+      {"beads",
+       std::make_shared<RevolvedShape>(Profile(
+           {0.0, -0.5}, {{{0.5, 0.0}, 2.0}, {{0.3, 0.4}, 2.0}, {{0.5, 0.8}, 2.0}, {{0.0, 1.3}, 2.0}}))}};
   std::mt19937 random(23);
   std::uniform_real_distribution<double> place(-1.0, 1.0);
   for (const auto& [name, solid] : solids) {
@@ -98,7 +100,8 @@ TEST(ShapePieces, TheirLeastDistanceIsTheSolids) {
         ++outside;
         for (const Shape& piece : pieces) {
           // No piece goes through the solid's own surface, and none changes faster than the way (G.7).
-          const Vector3d q = p + 0.5 * exact * Vector3d(place(random), place(random), place(random)).normalized();
+          const Vector3d q =
+              p + 0.5 * exact * Vector3d(place(random), place(random), place(random)).normalized();
           EXPECT_GE(piece->distance(p), exact - 1e-15) << name;
           EXPECT_LE(std::abs(piece->distance(p) - piece->distance(q)), (p - q).norm() + 1e-15) << name;
           EXPECT_DOUBLE_EQ(piece->at(p).distance, piece->distance(p)) << name;
@@ -131,13 +134,15 @@ TEST(ShapePieces, AreOnceDifferentiableWhereAWireCanLie) {
           const DistanceField f = solid->at(p);
           p -= (f.distance - radius) * f.normal;
         }
-        if (std::abs(solid->distance(p) - radius) > 1e-9 || std::abs(piece->distance(p) - radius) > 1e-9) continue;
+        if (std::abs(solid->distance(p) - radius) > 1e-9 || std::abs(piece->distance(p) - radius) > 1e-9)
+          continue;
         ++met;
         const DistanceField at = piece->at(p);
         constexpr double h = 1e-7;
         for (const Vector3d& way : {Vector3d(at.normal.z(), 0.0, -at.normal.x()), at.normal}) {
           const Vector3d jump = piece->at(p + h * way).normal - piece->at(p - h * way).normal;
-          EXPECT_LT(jump.norm(), 2.5 * h / r) << p.transpose();  // curvature at most 1/r, where a rim is sharp
+          EXPECT_LT(jump.norm(), 2.5 * h / r)
+              << p.transpose();  // curvature at most 1/r, where a rim is sharp
         }
       }
       EXPECT_GT(met, 100);
@@ -179,8 +184,8 @@ TEST(ShapePieces, DerivativesMatchDifferences) {
 TEST(ShapePieces, TessellatedCupIsTheCupWithinItsTessellation) {
   constexpr int around = 128;
   const Shape solid = cup({.inner_radius = 0.5, .depth = 0.6, .thickness = 0.2});
-  const MeshShape mesh(
-      test::revolved_mesh({{0.0, -0.2}, {0.7, -0.2}, {0.7, 0.6}, {0.5, 0.6}, {0.5, 0.0}, {0.0, 0.0}}, around));
+  const MeshShape mesh(test::revolved_mesh(
+      {{0.0, -0.2}, {0.7, -0.2}, {0.7, 0.6}, {0.5, 0.6}, {0.5, 0.0}, {0.0, 0.0}}, around));
   EXPECT_EQ(mesh.pieces(0.0).size(), 0u);  // not convex, and yet one
   const std::vector<Shape> pieces = pieces_of(solid);
   ASSERT_EQ(pieces.size(), 2u);
@@ -206,7 +211,8 @@ TEST(InteriorWalls, GapOfAWireAlongAHousing) {
   EXPECT_LT((f.normal + Vector3d(p.x(), p.y(), 0.0) / rho).norm(), 1e-15);
   EXPECT_NEAR(f.hessian.trace(), -1.0 / rho, 1e-13);
   // In the corner of a cup: wall and floor.
-  const std::vector<Shape> pieces = pieces_of(cup({.inner_radius = 0.5, .depth = 0.3, .thickness = 0.02}), 0.01);
+  const std::vector<Shape> pieces =
+      pieces_of(cup({.inner_radius = 0.5, .depth = 0.3, .thickness = 0.02}), 0.01);
   ASSERT_EQ(pieces.size(), 2u);
   const Vector3d seat(0.49, 0.0, 0.01);
   EXPECT_NEAR(pieces[0]->distance(seat), 0.01, 1e-15);
@@ -248,13 +254,15 @@ TEST(UnionShapes, WrongWallsAreNamed) {
               HasSubstr("ring outer_radius = 0.4, must be > inner_radius"));
   EXPECT_THAT(test::refusal([] { return hollow_cylinder(0.4, 0.5, 1.0, 0.06); }),
               HasSubstr("ring rounding = 0.06, must be"));
-  EXPECT_THAT(test::refusal([] { return cup({.inner_radius = 0.5, .depth = 0.1, .thickness = 0.0, .fillet = 0.2}); }),
-              testing::AllOf(HasSubstr("cup thickness = 0, must be > 0"), HasSubstr("cup fillet = 0.2, must be")));
-  EXPECT_THAT(test::refusal([] {
-                return rounded_profile({{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}, {0.1, 5.0, 0.0});
-              }),
-              testing::AllOf(HasSubstr("rounding[1] = 0.1, must be 0 on the axis"),
-                             HasSubstr("rounding[2] = 5, the arcs at the ends of the side before it must fit")));
+  EXPECT_THAT(
+      test::refusal([] { return cup({.inner_radius = 0.5, .depth = 0.1, .thickness = 0.0, .fillet = 0.2}); }),
+      testing::AllOf(HasSubstr("cup thickness = 0, must be > 0"), HasSubstr("cup fillet = 0.2, must be")));
+  EXPECT_THAT(
+      test::refusal([] {
+        return rounded_profile({{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}, {0.1, 5.0, 0.0});
+      }),
+      testing::AllOf(HasSubstr("rounding[1] = 0.1, must be 0 on the axis"),
+                     HasSubstr("rounding[2] = 5, the arcs at the ends of the side before it must fit")));
 }
 
 }  // namespace

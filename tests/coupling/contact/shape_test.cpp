@@ -76,20 +76,23 @@ std::vector<Sampled> sampled_shapes() {
                   [](const Vector3d& p) { return p.norm() < 0.7; }});
   std::vector<Vector2d> capsule = arc({0.0, -0.5}, 0.3, -0.5 * pi, 0.0);
   for (const Vector2d& p : arc({0.0, 0.5}, 0.3, 0.0, 0.5 * pi)) capsule.push_back(p);
-  list.push_back(
-      {"capsule", std::make_shared<Capsule>(0.3, 1.0), revolve(capsule, spacing), spacing,
-       [](const Vector3d& p) { return (p - Vector3d(0.0, 0.0, std::clamp(p.z(), -0.5, 0.5))).norm() < 0.3; }});
-  list.push_back({"knife edge", std::make_shared<Capsule>(0.0, 1.0), revolve({{0.0, -0.5}, {0.0, 0.5}}, spacing),
-                  spacing, [](const Vector3d&) { return false; }});
+  list.push_back({"capsule", std::make_shared<Capsule>(0.3, 1.0), revolve(capsule, spacing), spacing,
+                  [](const Vector3d& p) {
+                    return (p - Vector3d(0.0, 0.0, std::clamp(p.z(), -0.5, 0.5))).norm() < 0.3;
+                  }});
+  list.push_back({"knife edge", std::make_shared<Capsule>(0.0, 1.0),
+                  revolve({{0.0, -0.5}, {0.0, 0.5}}, spacing), spacing,
+                  [](const Vector3d&) { return false; }});
   list.push_back({"cylinder", finite_cylinder(0.5, 1.2),
                   revolve({{0.0, -0.6}, {0.5, -0.6}, {0.5, 0.6}, {0.0, 0.6}}, spacing), spacing,
                   [](const Vector3d& p) { return radius_of(p) < 0.5 && std::abs(p.z()) < 0.6; }});
-  list.push_back({"truncated cone", truncated_cone(0.6, 0.2, 1.0),
-                  revolve({{0.0, -0.5}, {0.6, -0.5}, {0.2, 0.5}, {0.0, 0.5}}, spacing), spacing,
-                  [](const Vector3d& p) { return std::abs(p.z()) < 0.5 && radius_of(p) < 0.4 - 0.4 * p.z(); }});
-  list.push_back({"full cone", truncated_cone(0.6, 0.0, 1.0), revolve({{0.0, -0.5}, {0.6, -0.5}, {0.0, 0.5}}, spacing),
-                  spacing,
-                  [](const Vector3d& p) { return std::abs(p.z()) < 0.5 && radius_of(p) < 0.3 - 0.6 * p.z(); }});
+  list.push_back(
+      {"truncated cone", truncated_cone(0.6, 0.2, 1.0),
+       revolve({{0.0, -0.5}, {0.6, -0.5}, {0.2, 0.5}, {0.0, 0.5}}, spacing), spacing,
+       [](const Vector3d& p) { return std::abs(p.z()) < 0.5 && radius_of(p) < 0.4 - 0.4 * p.z(); }});
+  list.push_back(
+      {"full cone", truncated_cone(0.6, 0.0, 1.0), revolve({{0.0, -0.5}, {0.6, -0.5}, {0.0, 0.5}}, spacing),
+       spacing, [](const Vector3d& p) { return std::abs(p.z()) < 0.5 && radius_of(p) < 0.3 - 0.6 * p.z(); }});
   // A cam of chord (0.6, 1.0) to (0.6, 0.4) rotated: the arc's circle is found here from its three points.
   GrappleShaft g;
   g.shaft_radius = 0.3;
@@ -106,18 +109,20 @@ std::vector<Sampled> sampled_shapes() {
   const Vector2d up = (0.5 * (a + c) - b).normalized();
   const double radius = (a - b).squaredNorm() / (2.0 * up.dot(a - b));
   const Vector2d centre = b + radius * up;
-  const auto angle = [&centre](const Vector2d& p) { return std::atan2(p.y() - centre.y(), p.x() - centre.x()); };
+  const auto angle = [&centre](const Vector2d& p) {
+    return std::atan2(p.y() - centre.y(), p.x() - centre.x());
+  };
   std::vector<Vector2d> shaft{{0.0, 0.0}, {0.3, 0.0}, {0.3, 1.0}};
   for (const Vector2d& p : arc(centre, radius, angle(a), angle(c))) shaft.push_back(p);
   shaft.emplace_back(0.0, 2.1);
-  list.push_back(
-      {"grapple shaft", grapple_shaft(g), revolve(shaft, spacing), spacing, [centre, radius](const Vector3d& p) {
-         const double r = radius_of(p), z = p.z();
-         if (z < 0.0 || z > 2.1) return false;
-         if (z < 1.0) return r < 0.3;
-         if (z < 1.3) return r < 0.3 + (z - 1.0);
-         return r < centre.x() + std::sqrt(radius * radius - (z - centre.y()) * (z - centre.y()));
-       }});
+  list.push_back({"grapple shaft", grapple_shaft(g), revolve(shaft, spacing), spacing,
+                  [centre, radius](const Vector3d& p) {
+                    const double r = radius_of(p), z = p.z();
+                    if (z < 0.0 || z > 2.1) return false;
+                    if (z < 1.0) return r < 0.3;
+                    if (z < 1.3) return r < 0.3 + (z - 1.0);
+                    return r < centre.x() + std::sqrt(radius * radius - (z - centre.y()) * (z - centre.y()));
+                  }});
   // A waist: a concave arc of radius 0.5 between two rims.
   std::vector<Vector2d> waist{{0.0, -0.4}, {0.6, -0.4}};
   for (const Vector2d& p : arc({0.9, 0.0}, 0.5, pi + std::asin(0.8), pi - std::asin(0.8))) waist.push_back(p);
@@ -129,19 +134,21 @@ std::vector<Sampled> sampled_shapes() {
                     const double r = radius_of(p);
                     return std::abs(p.z()) < 0.4 && r < 0.6 && std::hypot(r - 0.9, p.z()) > 0.5;
                   }});
-  list.push_back({"cup", cup({.inner_radius = 0.5, .depth = 0.6, .thickness = 0.2}),
-                  revolve({{0.0, -0.2}, {0.7, -0.2}, {0.7, 0.6}, {0.5, 0.6}, {0.5, 0.0}, {0.0, 0.0}}, spacing), spacing,
-                  [](const Vector3d& p) {
-                    return p.z() > -0.2 && p.z() < 0.6 && radius_of(p) < 0.7 && (p.z() < 0.0 || radius_of(p) > 0.5);
-                  }});
+  list.push_back(
+      {"cup", cup({.inner_radius = 0.5, .depth = 0.6, .thickness = 0.2}),
+       revolve({{0.0, -0.2}, {0.7, -0.2}, {0.7, 0.6}, {0.5, 0.6}, {0.5, 0.0}, {0.0, 0.0}}, spacing), spacing,
+       [](const Vector3d& p) {
+         return p.z() > -0.2 && p.z() < 0.6 && radius_of(p) < 0.7 && (p.z() < 0.0 || radius_of(p) > 0.5);
+       }});
   // A ring rounded to half its wall: all within 0.15 of a cylinder's wall.
   std::vector<Vector2d> ring{{0.4, -0.25}};
   for (const Vector2d& p : arc({0.55, -0.25}, 0.15, -pi, 0.0)) ring.push_back(p);
   for (const Vector2d& p : arc({0.55, 0.25}, 0.15, 0.0, pi)) ring.push_back(p);
   ring.emplace_back(0.4, -0.25);
-  list.push_back({"ring", hollow_cylinder(0.4, 0.7, 0.8, 0.15), revolve(ring, spacing), spacing, [](const Vector3d& p) {
-                    return std::hypot(radius_of(p) - 0.55, p.z() - std::clamp(p.z(), -0.25, 0.25)) < 0.15;
-                  }});
+  list.push_back(
+      {"ring", hollow_cylinder(0.4, 0.7, 0.8, 0.15), revolve(ring, spacing), spacing, [](const Vector3d& p) {
+         return std::hypot(radius_of(p) - 0.55, p.z() - std::clamp(p.z(), -0.25, 0.25)) < 0.15;
+       }});
   return list;
 }
 
@@ -162,7 +169,8 @@ TEST(ContactShapes, DistanceIsThatToTheSampledSurface) {
       EXPECT_DOUBLE_EQ(d, s.shape->at(p).distance) << s.name;
       // A sample is at most half a diagonal of the grid beside the foot, and not nearer than it.
       const double beside = 0.5 * std::numbers::sqrt2 * s.spacing;
-      EXPECT_GE(brute, std::abs(d) - 1e-4) << s.name << ' ' << p.transpose();  // 1e-4: chords of the sampled arcs
+      EXPECT_GE(brute, std::abs(d) - 1e-4)
+          << s.name << ' ' << p.transpose();  // 1e-4: chords of the sampled arcs
       EXPECT_LE(brute, std::abs(d) + beside) << s.name << ' ' << p.transpose();
     }
     EXPECT_GT(inside, s.name == "knife edge" ? -1 : 3) << s.name;
@@ -273,19 +281,25 @@ TEST(ContactShapes, WrongProfilesAreNamed) {
       {{0.0, 0.0},
        Edges{{{1.0, 0.0}, 0.0}, {{1.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}},
        "profile[2] = (1, 0), must not be where the edge begins"},
-      {{0.0, 0.0}, Edges{{{1.0, 0.0}, 0.0}, {{0.5, 1.0}, 0.0}}, "profile[2] = (0.5, 1), must end on the axis"},
+      {{0.0, 0.0},
+       Edges{{{1.0, 0.0}, 0.0}, {{0.5, 1.0}, 0.0}},
+       "profile[2] = (0.5, 1), must end on the axis"},
       {{0.0, 0.0},
        Edges{{{1.0, 0.0}, 0.0}, {{1.0, 2.0}, 1.5}, {{0.0, 2.0}, 0.0}},
        "needs a radius of curvature of half its chord of 2 m"},
       {{0.0, 0.0}, Edges{{{1.0, 0.0}, 0.0}, {{0.0, -1.0}, 0.0}}, "must run upward"},
-      {{1.0, 0.0}, Edges{{{2.0, 0.0}, 0.0}, {{1.0, 1.0}, 0.0}}, "profile[2] = (1, 1), must end where it began"},
+      {{1.0, 0.0},
+       Edges{{{2.0, 0.0}, 0.0}, {{1.0, 1.0}, 0.0}},
+       "profile[2] = (1, 1), must end where it began"},
       {{-1.0, 0.0}, Edges{{{2.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}}, "must begin on the axis or right of it"},
       {{0.0, 0.0},
        Edges{{{1.0, 0.0}, 0.0}, {{1.0, 1.0}, 0.0}, {{0.5, -1.0}, 0.0}, {{0.5, 2.0}, 0.0}, {{0.0, 2.0}, 0.0}},
        "must not cross itself"},
   };
   for (const auto& one : wrong) {
-    const auto make = [&] { return std::make_from_tuple<Profile>(std::tie(std::get<0>(one), std::get<1>(one))); };
+    const auto make = [&] {
+      return std::make_from_tuple<Profile>(std::tie(std::get<0>(one), std::get<1>(one)));
+    };
     EXPECT_THAT(test::refusal(make), HasSubstr(std::get<2>(one)));
   }
   GrappleShaft shaft;

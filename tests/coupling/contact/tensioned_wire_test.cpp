@@ -12,7 +12,8 @@ namespace {
 TEST(TensionedWire, MatchesPublishedChecks) {
   const double ei = 0.04796;
   const double expected[3][2] = {{0.040, 7407.2}, {0.065, 3638.9}, {0.090, 3083.8}};
-  for (const auto& [s, k] : expected) EXPECT_NEAR(tensioned_stiffness(ei, 50.0, 0.175, s).value, k, 0.5e-4 * k) << s;
+  for (const auto& [s, k] : expected)
+    EXPECT_NEAR(tensioned_stiffness(ei, 50.0, 0.175, s).value, k, 0.5e-4 * k) << s;
 }
 
 // Both are closed forms in double precision; the other one loses digits as the wire becomes a string.
@@ -38,9 +39,9 @@ TEST(TensionedWire, HasBeamAndStringAsLimits) {
 TEST(TensionedWire, DerivativeMatchesDifferences) {
   for (const double t : {-20.0, 0.0, 0.3, 3.0, 60.0, 4000.0}) {
     const double h = 1e-4 * (1.0 + std::abs(t));
-    const double difference =
-        (tensioned_stiffness(0.04, t + h, 0.175, 0.05).value - tensioned_stiffness(0.04, t - h, 0.175, 0.05).value) /
-        (2.0 * h);
+    const double difference = (tensioned_stiffness(0.04, t + h, 0.175, 0.05).value -
+                               tensioned_stiffness(0.04, t - h, 0.175, 0.05).value) /
+                              (2.0 * h);
     EXPECT_NEAR(tensioned_stiffness(0.04, t, 0.175, 0.05).by_tension / difference, 1.0, 1e-6) << t;
   }
 }

@@ -74,8 +74,8 @@ TEST_P(MotionReactions, BalanceMomentumAndAngularMomentum) {
 }
 INSTANTIATE_TEST_SUITE_P(Mounts, MotionReactions,
                          testing::Values(std::pair{End::clamp, End::clamp}, std::pair{End::clamp, End::pin},
-                                         std::pair{End::twisting_pin, End::clamp}, std::pair{End::pin, End::pin},
-                                         std::pair{End::clamp, End::free}));
+                                         std::pair{End::twisting_pin, End::clamp},
+                                         std::pair{End::pin, End::pin}, std::pair{End::clamp, End::free}));
 
 // A body that is moved as prescribed pushes the wire: its force comes from outside and works.
 TEST(MotionBalance, ADrivenBodyIsAccountedFor) {
@@ -107,7 +107,8 @@ TEST(MotionBalance, AFreeDampedWireKeepsItsAngularMomentum) {
     for (int i = 0; i <= 16; ++i) {
       const double s = length * i / 16;
       x.col(i) = Vector3d(s, 0.02 * std::sin(M_PI * s / length), 0.01 * std::sin(2.0 * M_PI * s / length));
-      v.col(i) = spin.cross(x.col(i) - Vector3d(0.1, 0.0, 0.0)) + Vector3d(0.0, 0.2 * std::cos(M_PI * s / length), 0.0);
+      v.col(i) = spin.cross(x.col(i) - Vector3d(0.1, 0.0, 0.0)) +
+                 Vector3d(0.0, 0.2 * std::cos(M_PI * s / length), 0.0);
     }
     motion.wires.push_back({"wire", rod, x, v});
     MotionOptions options;
@@ -147,7 +148,8 @@ TEST(MotionBalance, EnergyOfAConservativeImpactStays) {
   const MotionResult result = simulate(motion, options);
   ASSERT_TRUE(result.report.usable()) << result.report.message;
   EXPECT_EQ(result.events.back().kind, MotionEvent::Kind::lift_off);
-  EXPECT_LT(std::abs(result.energy.integrator), 1e-3 * 0.5 * 0.05 * motion.bodies[0].start.velocity.squaredNorm());
+  EXPECT_LT(std::abs(result.energy.integrator),
+            1e-3 * 0.5 * 0.05 * motion.bodies[0].start.velocity.squaredNorm());
 }
 
 // A hook hangs on the wire by a bar of 4 mm, swings and slides to and fro for a minute.
@@ -176,8 +178,10 @@ TEST(SlowMotionBalance, NothingDriftsInAMinute) {
   EXPECT_GT(swing, 0.1);    // and of one that moves [rad/s]
   EXPECT_LT(result.largest_drift, 1e-9);
   // F = 4/3 k sqrt(2 (R + r)) d^(3/2) (M.8).
-  const double modulus = default_modulus(rod.properties.axial_stiffness, rod.properties.bending_stiffness, 0.002);
-  const double give = std::pow(result.peak_force[0] / (4.0 / 3.0 * modulus * std::sqrt(2.0 * 0.003)), 2.0 / 3.0);
+  const double modulus =
+      default_modulus(rod.properties.axial_stiffness, rod.properties.bending_stiffness, 0.002);
+  const double give =
+      std::pow(result.peak_force[0] / (4.0 / 3.0 * modulus * std::sqrt(2.0 * 0.003)), 2.0 / 3.0);
   EXPECT_LT(result.largest_penetration, 1.3 * give);
   const double weight = 0.052 * 9.81;
   EXPECT_LT(result.momentum_error.norm(), 1e-6 * weight * options.duration);
@@ -220,7 +224,8 @@ TEST(MotionState, ABodyThatIsTooFastEndsTheRun) {
   EXPECT_FALSE(result.report.usable());
   EXPECT_THAT(result.report.message,
               testing::MatchesRegex("visitor moves at 20.. m/s; bodies are computed up to 2000 m/s"));
-  EXPECT_NEAR(result.report.time, 2000.0 / (1e4 / 0.05), 1e-4);  // of a constant acceleration, at most a step further
+  EXPECT_NEAR(result.report.time, 2000.0 / (1e4 / 0.05),
+              1e-4);  // of a constant acceleration, at most a step further
 }
 
 // Runs share nothing that they change, the motion with its shapes included.
@@ -252,7 +257,8 @@ TEST(MotionState, AnEndedMotionGoesOn) {
   EXPECT_EQ(on.report.time, 0.04);
   // The start at first order in between costs some errors of a step.
   EXPECT_LT((on.impulse[0] - through.impulse[0]).norm(), 1e-4 * through.impulse[0].norm());
-  EXPECT_LT((on.last.unknowns.head(3 * 17) - through.last.unknowns.head(3 * 17)).lpNorm<Eigen::Infinity>(), 1e-6);
+  EXPECT_LT((on.last.unknowns.head(3 * 17) - through.last.unknowns.head(3 * 17)).lpNorm<Eigen::Infinity>(),
+            1e-6);
 }
 
 TEST(MotionState, AFailureKeepsWhatWasReached) {

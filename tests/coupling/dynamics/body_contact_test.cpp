@@ -130,7 +130,8 @@ TEST(BodyContact, ABallMayRestButNotBeginInside) {
     return test::refusal([&] { return simulate(motion, fine(1e-4), {}); });
   };
   EXPECT_EQ(begun_at(0.004), "accepted");
-  EXPECT_THAT(begun_at(0.006), testing::HasSubstr("contact.gap = -0.006 m, must be >= -0.005 m at the start"));
+  EXPECT_THAT(begun_at(0.006),
+              testing::HasSubstr("contact.gap = -0.006 m, must be >= -0.005 m at the start"));
 }
 
 /// A block of 1 kg on four feet that carry it, on a plane of the world at the height of its centre, so that friction does not tip it; the
@@ -191,7 +192,9 @@ TEST(BodyContact, ABlockRestsOnARampOrSlidesByCoulombsLaw) {
     const double way = std::max(0.0, give * (2.0 * pull - limit) / (2.0 * (limit - pull)));
     EXPECT_TRUE(r.sticks);
     EXPECT_GT(r.place, 0.0);
-    EXPECT_LT(r.place, 1.02 * (give + way));  // damping of the bristles shortens it; coordinates err by 1e-7 m and less
+    EXPECT_LT(
+        r.place,
+        1.02 * (give + way));  // damping of the bristles shortens it; coordinates err by 1e-7 m and less
     // The swing decays as exp(-tau g mu/(2 z_m) t), 10/s at 0.2, from 1 mm/s: after a second it is below the tolerance of velocities.
     EXPECT_LT(r.late_speed, 1e-6);
     EXPECT_FALSE(r.falls);
@@ -295,7 +298,8 @@ TEST(FrameLoad, ThrusterTurnsWithItsBody) {
   ASSERT_TRUE(r.report.usable()) << r.report.message;
   const auto of = [](double from, double to) -> Vector3d {
     return 3.0 / 2.0 / 2.0 *
-           Vector3d(std::sin(2.0 * to) - std::sin(2.0 * from), std::cos(2.0 * from) - std::cos(2.0 * to), 0.0);
+           Vector3d(std::sin(2.0 * to) - std::sin(2.0 * from), std::cos(2.0 * from) - std::cos(2.0 * to),
+                    0.0);
   };
   EXPECT_LT((velocity - of(0.0, 0.5) - of(1.0, 1.5)).norm(), 1e-6);
   EXPECT_NEAR(r.energy.integrator, 0.0, 1e-6);

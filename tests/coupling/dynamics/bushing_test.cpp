@@ -65,7 +65,8 @@ std::vector<double> upward_zeros(const Motion& motion, const MotionOptions& opti
   const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
     const std::pair<double, double> now{s.time, number(s)};
     if (before && before->second < 0.0 && now.second >= 0.0)
-      zeros.push_back(before->first - before->second * (now.first - before->first) / (now.second - before->second));
+      zeros.push_back(before->first -
+                      before->second * (now.first - before->first) / (now.second - before->second));
     before = now;
     return false;
   });
@@ -80,8 +81,8 @@ TEST(Bushing, FrequenciesAreThoseOfTheClosedForm) {
   clamped.bodies = {block("visitor", 3.0, {0.3, 0.4, 0.5})};
   clamped.bushings = {bushing_between({}, body_of(0))};
   clamped.bodies[0].start.spin = {1e-3, 0.0, 0.0};
-  const std::vector<double> turns =
-      upward_zeros(clamped, fine(5.0, 1e-3), [](const MotionSample& s) { return s.bodies[0].orientation.x(); });
+  const std::vector<double> turns = upward_zeros(
+      clamped, fine(5.0, 1e-3), [](const MotionSample& s) { return s.bodies[0].orientation.x(); });
   ASSERT_GT(turns.size(), 5u);
   const double period = (turns.back() - turns.front()) / static_cast<double>(turns.size() - 1);
   EXPECT_NEAR(period, 2.0 * std::numbers::pi * std::sqrt(0.3 / 40.0), 1e-5 * period);
@@ -130,8 +131,8 @@ TEST(Bushing, DampsAsTheClosedForm) {
   double worst = 0.0;
   const MotionResult result = simulate(motion, fine(1.0, 1e-3), [&](const MotionSample& s) {
     const double w = omega * std::sqrt(1.0 - zeta * zeta);
-    worst = std::max(
-        worst, std::abs(s.bodies[0].position.x() - 0.1 / w * std::exp(-zeta * omega * s.time) * std::sin(w * s.time)));
+    worst = std::max(worst, std::abs(s.bodies[0].position.x() -
+                                     0.1 / w * std::exp(-zeta * omega * s.time) * std::sin(w * s.time)));
     return false;
   });
   ASSERT_TRUE(result.report.usable()) << result.report.message;

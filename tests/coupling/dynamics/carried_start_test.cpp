@@ -26,8 +26,8 @@ struct Start {
 Start run(const Motion& motion, MotionOptions options, double tighter = 1.0) {
   options.relative_tolerance /= tighter;
   for (double* t : {&options.position_tolerance, &options.velocity_tolerance, &options.twist_tolerance,
-                    &options.body_position_tolerance, &options.body_velocity_tolerance, &options.angle_tolerance,
-                    &options.spin_tolerance})
+                    &options.body_position_tolerance, &options.body_velocity_tolerance,
+                    &options.angle_tolerance, &options.spin_tolerance})
     *t /= tighter;
   options.output_interval = options.duration;
   Start s;
@@ -106,7 +106,8 @@ TEST(CarriedStart, IsGalileiInvariant) {
     SCOPED_TRACE(trial);
     const Motion motion = random_scene(random);
     const Vector3d along(3.0, -7.0, 2.0);
-    const Start rest = run(motion, options), moving = run(superposed(motion, along, Vector3d::Zero()), options);
+    const Start rest = run(motion, options),
+                moving = run(superposed(motion, along, Vector3d::Zero()), options);
     const double scale = largest(rest.mount_forces);
     EXPECT_GT(scale, 1e-4);
     EXPECT_LT(largest_difference(rest.mount_forces, moving.mount_forces), 1e-6 * scale);
@@ -128,7 +129,8 @@ TEST(CarriedStart, FeelsNoSuperposedRotation) {
     motion.wires[0].rod.mass_per_length = 1e-9;
     for (MotionBody& b : motion.bodies) b.driven = false;
     const std::vector<Vector3d> rest = start_forces(motion),
-                                turning = start_forces(superposed(motion, Vector3d::Zero(), {4.0, -3.0, 5.0}));
+                                turning =
+                                    start_forces(superposed(motion, Vector3d::Zero(), {4.0, -3.0, 5.0}));
     EXPECT_GT(largest(rest), 1e-2);
     EXPECT_LT(largest_difference(rest, turning), 1e-6 * largest(rest));
   }
@@ -144,7 +146,8 @@ TEST(CarriedStart, StretchesEvenlyBetweenTwoCarriers) {
     motion.bodies.back().driven = true;
     motion.bodies.back().start.velocity.x() = k == 0 ? 1.0 : 1.5;
   }
-  motion.mounts = {{"left", 0, wire::End::left, test::body_of(0)}, {"right", 0, wire::End::right, test::body_of(1)}};
+  motion.mounts = {{"left", 0, wire::End::left, test::body_of(0)},
+                   {"right", 0, wire::End::right, test::body_of(1)}};
   const std::vector<Vector3d> forces = start_forces(motion);
   // N = tau EA e', of both ends alike: 1e-4 s, 1e3 N, 0.5 m/s over 0.2 m.
   EXPECT_NEAR(forces[0].x(), -0.25, 1e-9);

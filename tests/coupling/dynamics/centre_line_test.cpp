@@ -84,7 +84,8 @@ TEST(CentreLine, BendsAWireWithoutTwist) {
     const double allowed = formulation == wire::Formulation::vertices ? 1e-12 : 1e-3 * moment;  // N m
     for (int e = 0; e + 1 < part.vertices(); ++e) EXPECT_LT(std::abs(rows[part.angle_of(e)]), allowed);
     const wire::RodPart::SectionLoads loads = part.section_loads({0.0, y, rate});
-    EXPECT_NEAR(loads.bending_moments[20], moment, 5e-3 * moment);  // of 40 elements that turn by 0.12 rad each
+    EXPECT_NEAR(loads.bending_moments[20], moment,
+                5e-3 * moment);  // of 40 elements that turn by 0.12 rad each
     EXPECT_LT(part.mount_error(y), 1e-15);
   }
 }
@@ -103,9 +104,11 @@ TEST(CentreLine, OfAStraightWireIsStraightToRoundOff) {
   EXPECT_NEAR(line.length(), std::hypot(0.2, 0.4), 1e-15);
   const MotionWire w = wire_on(line, wire::Formulation::higher_order);
   for (int i = 0; i <= 40; ++i)
-    EXPECT_LT((w.positions.col(i) - (points.col(0) + i / 40.0 * (points.col(1) - points.col(0)))).norm(), 1e-15);
+    EXPECT_LT((w.positions.col(i) - (points.col(0) + i / 40.0 * (points.col(1) - points.col(0)))).norm(),
+              1e-15);
   EXPECT_EQ(w.velocities.cols(), 0);
-  EXPECT_LT((w.rod.properties.left.director - Vector3d::UnitY()).norm(), 1e-13);  // across its plane, to round-off
+  EXPECT_LT((w.rod.properties.left.director - Vector3d::UnitY()).norm(),
+            1e-13);  // across its plane, to round-off
 }
 
 }  // namespace

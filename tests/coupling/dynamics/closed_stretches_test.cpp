@@ -44,7 +44,8 @@ struct Quartic {
     const auto gap = [this](double u) { return GapPlace{u, value(u), slope(u), 0.0}; };
     std::vector<ContactInterval> found;
     std::vector<GapPlace> minima;
-    ContactIntervals(length, 2.0 * length, largest_bend(), resolution).find(gap, gap(0.0), gap(1.0), found, minima);
+    ContactIntervals(length, 2.0 * length, largest_bend(), resolution)
+        .find(gap, gap(0.0), gap(1.0), found, minima);
     return found;
   }
 };
@@ -76,8 +77,8 @@ TEST(ContactIntervals, NothingIsHiddenAndNothingOpenIsTaken) {
     for (int i = 0; i <= places; ++i) {
       const double u = static_cast<double>(i) / places, gap = g.value(u);
       if (std::abs(gap) < 1e-12) continue;
-      const bool inside =
-          std::any_of(found.begin(), found.end(), [u](const ContactInterval& s) { return u >= s.from && u <= s.to; });
+      const bool inside = std::any_of(found.begin(), found.end(),
+                                      [u](const ContactInterval& s) { return u >= s.from && u <= s.to; });
       ASSERT_EQ(inside, gap < 0.0) << "case " << k << ", u " << u << ", gap " << gap;
     }
   }
@@ -87,7 +88,8 @@ TEST(ContactIntervals, NothingIsHiddenAndNothingOpenIsTaken) {
 
 // A step that has run away: no minimum is found, and the search ends.
 TEST(ContactIntervals, WhatIsNoNumberEndsTheSearch) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
+  constexpr double none = std::numeric_limits<double>::quiet_NaN(),
+                   endless = std::numeric_limits<double>::infinity();
   for (const double value : {none, endless, -endless}) {
     for (const double way : {length, none, endless}) {
       if (std::isfinite(value + way)) continue;
@@ -190,5 +192,6 @@ TEST(ContactIntervals, LoadsDoNotJumpWhereAStretchPartsOrACrestRises) {
     }
   };
   for (const double tilt : {0.0, 0.1, -0.4, 0.8}) follow({tilt, 0.5}, &TwoLobes::level, 2.5);
-  for (const double level : {0.9, 1.2, 2.0}) follow({-2.0, level}, &TwoLobes::tilt, 2.0);  // one lobe beyond pi/2
+  for (const double level : {0.9, 1.2, 2.0})
+    follow({-2.0, level}, &TwoLobes::tilt, 2.0);  // one lobe beyond pi/2
 }

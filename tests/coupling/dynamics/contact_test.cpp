@@ -40,7 +40,8 @@ Matrix3d along_the_wire() {
 TEST(ContactPart, NearestPointAndForceAreThoseOfASampledWire) {
   wire::RodInMotion constants = soft_wire(12);
   constants.grading = 1.0;
-  Motion motion = body_below(constants, std::make_shared<Capsule>(0.003, 0.2), {0.07, -0.0045, 0.002}, 0.0, 1.0);
+  Motion motion =
+      body_below(constants, std::make_shared<Capsule>(0.003, 0.2), {0.07, -0.0045, 0.002}, 0.0, 1.0);
   MotionContact& contact = motion.contacts[0];
   contact.X_BS.R = along_the_wire();
   contact.X_BS.p = {0.03, 0.0, 0.0};
@@ -62,7 +63,8 @@ TEST(ContactPart, NearestPointAndForceAreThoseOfASampledWire) {
     const CurveWeights w = curve_weights(rod, s);
     Vector3d x = Vector3d::Zero();
     for (int k = 0; k < 4; ++k) x += w.value[k] * y.segment<3>(rod.position_of(w.first + k));
-    const DistanceField field = contact.shape->at(along_the_wire().transpose() * (x - Vector3d(0.1, -0.0045, 0.002)));
+    const DistanceField field =
+        contact.shape->at(along_the_wire().transpose() * (x - Vector3d(0.1, -0.0045, 0.002)));
     normal = along_the_wire() * field.normal;
     return field.distance - 0.001;
   };
@@ -103,8 +105,8 @@ TEST(ContactPart, AStraightWireAcrossAPinMeetsTheForceOfItsDepth) {
       rod.place(motion.wires[0].positions, Eigen::Matrix3Xd::Zero(3, 21), y);
       body.place(y);
       part.update_candidates(y);
-      const double expected =
-          4.0 / 3.0 * contact.foundation.modulus * std::sqrt(2.0 * (radius + wire_radius)) * depth * std::sqrt(depth);
+      const double expected = 4.0 / 3.0 * contact.foundation.modulus *
+                              std::sqrt(2.0 * (radius + wire_radius)) * depth * std::sqrt(depth);
       EXPECT_NEAR(part.sums(y).force.y(), expected, 2e-4 * expected) << depth << ' ' << place;
     }
   }
@@ -130,9 +132,10 @@ TEST(MotionOfMeshes, StrikeLikeTheSolidsTheyTessellate) {
   // where the cylinder would, which turns the force by so much and shortens its part along the push by half the square, 0.4 %.
   constexpr double share = 0.01;
   const MotionResult cylinder = impact(finite_cylinder(radius, 0.04), Matrix3d::Identity(), radius);
-  const MotionResult cylinder_mesh = impact(std::make_shared<MeshShape>(test::revolved_mesh(
-                                                {{0.0, -0.02}, {radius, -0.02}, {radius, 0.02}, {0.0, 0.02}}, around)),
-                                            Matrix3d::Identity(), radius);
+  const MotionResult cylinder_mesh =
+      impact(std::make_shared<MeshShape>(
+                 test::revolved_mesh({{0.0, -0.02}, {radius, -0.02}, {radius, 0.02}, {0.0, 0.02}}, around)),
+             Matrix3d::Identity(), radius);
   const MotionResult ball = impact(std::make_shared<Ball>(radius), Matrix3d::Identity(), radius);
   const MotionResult ball_mesh =
       impact(std::make_shared<MeshShape>(test::revolved_mesh(test::half_circle(radius, around / 2), around)),
@@ -149,8 +152,8 @@ TEST(MotionOfMeshes, StrikeLikeTheSolidsTheyTessellate) {
 
 TEST(MotionPoints, TwoRimsBearHalfEach) {
   // An hourglass along the wire: its two rims touch at once.
-  const auto hourglass = std::make_shared<RevolvedShape>(
-      Profile({0.0, -0.02}, {{{0.01, -0.02}, 0.0}, {{0.005, 0.0}, 0.0}, {{0.01, 0.02}, 0.0}, {{0.0, 0.02}, 0.0}}));
+  const auto hourglass = std::make_shared<RevolvedShape>(Profile(
+      {0.0, -0.02}, {{{0.01, -0.02}, 0.0}, {{0.005, 0.0}, 0.0}, {{0.01, 0.02}, 0.0}, {{0.0, 0.02}, 0.0}}));
   Motion motion = body_below(soft_wire(20), hourglass, {0.1, -0.012, 0.0}, 0.3, 0.05);
   motion.contacts[0].X_BS.R = along_the_wire();
   motion.contacts[0].foundation.modulus = stiff;
@@ -254,7 +257,8 @@ TEST(MotionPoints, NowhereInsideAThinPinThatTheWireWraps) {
 }
 
 TEST(MotionPoints, AnOverlapAtTheStartIsRefused) {
-  const Motion motion = body_below(soft_wire(8), std::make_shared<Ball>(0.01), {0.1, -0.0106, 0.0}, 0.0, 0.05);
+  const Motion motion =
+      body_below(soft_wire(8), std::make_shared<Ball>(0.01), {0.1, -0.0106, 0.0}, 0.0, 0.05);
   const std::string said = test::refusal([&] { return simulate(motion, {}); });
   EXPECT_THAT(said, testing::HasSubstr("contact.gap = -0.000"));
   EXPECT_THAT(said, testing::HasSubstr("must be >= 0 m at the start"));
@@ -266,12 +270,13 @@ TEST(MotionPoints, AnOverlapAtTheStartIsRefused) {
 /// A pin that is moved across the wire, until just after it touches.
 MotionResult touch_of(double radius, double speed, double swing, double max_step) {
   wire::RodInMotion rod = soft_wire(12);
-  Motion motion =
-      body_below(rod, std::make_shared<Capsule>(radius, 0.05), {0.0937, -radius - 1e-4 - 0.001, 0.0}, speed, 1.0);
+  Motion motion = body_below(rod, std::make_shared<Capsule>(radius, 0.05),
+                             {0.0937, -radius - 1e-4 - 0.001, 0.0}, speed, 1.0);
   motion.bodies[0].driven = true;
   motion.contacts[0].wire_radius = 1e-4;
   Eigen::Matrix3Xd velocities = Eigen::Matrix3Xd::Zero(3, 13);
-  for (Eigen::Index i = 1; i < 12; ++i) velocities(1, i) = swing * std::sin(pi * static_cast<double>(i) / 12.0);
+  for (Eigen::Index i = 1; i < 12; ++i)
+    velocities(1, i) = swing * std::sin(pi * static_cast<double>(i) / 12.0);
   motion.wires[0].velocities = velocities;
   MotionOptions options;
   options.duration = 1.05e-3 / speed;

@@ -71,7 +71,8 @@ struct Scene {
   [[nodiscard]] VectorXd rate(const VectorXd& y) const {
     VectorXd rate = VectorXd::Zero(y.size());
     for (const wire::RodPart* r : rods) {
-      for (int i = 0; i < r->vertices(); ++i) rate.segment<3>(r->position_of(i)) = y.segment<3>(r->velocity_of(i));
+      for (int i = 0; i < r->vertices(); ++i)
+        rate.segment<3>(r->position_of(i)) = y.segment<3>(r->velocity_of(i));
     }
     for (const BodyPart* b : bodies) {
       rate.segment<3>(b->position()) = y.segment<3>(b->velocity());
@@ -87,7 +88,8 @@ struct Scene {
     const double stored = (energy(y + step * rate) - energy(y - step * rate)) / (2.0 * step);
     const double power = taken(y, rate), heat = lost(y);
     const double scale = std::abs(stored) + std::abs(power) + std::abs(heat);
-    const double round_off = 3e-14 * std::abs(energy(y)) / step;  // of a length of which a hundredth is stretch
+    const double round_off =
+        3e-14 * std::abs(energy(y)) / step;  // of a length of which a hundredth is stretch
     EXPECT_GE(heat, -1e-12 * scale);
     EXPECT_NEAR(power - stored, heat, accuracy * scale + round_off);
     return heat > 1e-6 * scale + round_off;
@@ -102,7 +104,8 @@ MotionFriction friction(ContactFriction law) {
 
 void move(const BodyPart& body, double speed, Random& random, VectorXd& y) {
   body.place(y);
-  y.segment<4>(body.quaternion()) = (Eigen::Vector4d(1.0, 0.0, 0.0, 0.0) + 0.2 * random.vector_4()).normalized();
+  y.segment<4>(body.quaternion()) =
+      (Eigen::Vector4d(1.0, 0.0, 0.0, 0.0) + 0.2 * random.vector_4()).normalized();
   y.segment<3>(body.velocity()) = speed * random.vector();
   y.segment<3>(body.spin()) = 10.0 * speed * random.vector();
 }
@@ -165,7 +168,8 @@ TEST(Dissipation, OfTwoWires) {
     WirePair& pair = motion.wire_pairs[0];
     pair.radii = {1e-3, 0.7e-3};
     pair.foundation = {3e8, random.between(1.0, 1e3)};
-    if (trial % 4 > 0) pair.friction = friction(trial % 4 == 1 ? ContactFriction::smooth : ContactFriction::stick_slip);
+    if (trial % 4 > 0)
+      pair.friction = friction(trial % 4 == 1 ? ContactFriction::smooth : ContactFriction::stick_slip);
     wire::RodPart first("first", motion.wires[0].rod, {}), second("second", motion.wires[1].rod, {});
     WirePairPart part(pair, first, second);
     const numerics::DaeSystem system({&first, &second, &part});

@@ -43,10 +43,12 @@ MotionResult run(const Motion& motion, double duration, Seen& seen) {
     const multibody::RigidBodyState& block = s.bodies[0];
     for (const auto& x : s.wires[0].colwise()) {
       const Vector3d in_block = block.orientation.conjugate() * (x - block.position);
-      seen.deepest_vertex = std::max(seen.deepest_vertex, contact.wire_radius - contact.shape->distance(in_block));
+      seen.deepest_vertex =
+          std::max(seen.deepest_vertex, contact.wire_radius - contact.shape->distance(in_block));
     }
     seen.most_points = std::max(seen.most_points, s.contacts[0].points.size());
-    for (const ContactSample& p : s.contacts[0].points) seen.least_force = std::min(seen.least_force, p.normal_force);
+    for (const ContactSample& p : s.contacts[0].points)
+      seen.least_force = std::min(seen.least_force, p.normal_force);
     seen.largest_spin = std::max(seen.largest_spin, s.bodies[0].spin.norm());
     return false;
   });

@@ -54,8 +54,8 @@ TEST(MotionFriction, ForceAndRateHaveExactDerivatives) {
           x << 0.6 * stretch, -0.8 * stretch, 0.8, -0.3, 1.1, 0.9, 1.0;
           const TangentForce t = tangent_force(friction, state(x));
           Eigen::MatrixXd analytic = Eigen::MatrixXd::Zero(4, 7);
-          analytic.topRows<2>().leftCols<6>() << 1e-6 * t.by_bristle, speed * t.by_sliding, 10.0 * t.by_normal,
-              10.0 * t.by_elastic;
+          analytic.topRows<2>().leftCols<6>() << 1e-6 * t.by_bristle, speed * t.by_sliding,
+              10.0 * t.by_normal, 10.0 * t.by_elastic;
           for (int k = 0; bristles && k < 7; ++k) {
             const VectorXd e = VectorXd::Unit(7, k);
             const BristleChange by{1e-6 * e.segment<2>(0), speed * e.segment<2>(2), 10.0 * e[4], 10.0 * e[5],
@@ -86,9 +86,11 @@ TEST(MotionFriction, HeatIsNeverNegative) {
   const MotionFriction f = papers_friction();
   int slides = 0;
   for (int k = 0; k < 10000; ++k) {
-    const double elastic = 5.0 * (1.0 + unit(random)), normal = k % 3 == 0 ? elastic : 5.0 * (1.0 + unit(random));
+    const double elastic = 5.0 * (1.0 + unit(random)),
+                 normal = k % 3 == 0 ? elastic : 5.0 * (1.0 + unit(random));
     BristleState s{f.bristle_displacement * Vector2d(unit(random), unit(random)),
-                   std::pow(10.0, 3.0 * unit(random) - 2.0) * Vector2d(unit(random), unit(random)), normal, elastic};
+                   std::pow(10.0, 3.0 * unit(random) - 2.0) * Vector2d(unit(random), unit(random)), normal,
+                   elastic};
     if (k % 4 == 0) s.bristle *= 2.0;
     const double elastic_rate = k % 5 == 0 ? 0.0 : unit(random) * std::pow(10.0, 4.0 + 3.0 * unit(random));
     const TangentForce t = tangent_force(f, s);
@@ -148,7 +150,8 @@ TEST(MotionFriction, MoreSpeedNeverMeansLessForce) {
   f.dynamic_coefficient = f.static_coefficient;
   for (int k = 0; k < 10000; ++k) {
     const BristleState s{2.0 * f.bristle_displacement * Vector2d(unit(random), unit(random)),
-                         std::pow(10.0, 3.0 * unit(random) - 2.0) * Vector2d(unit(random), unit(random)), 10.0, 10.0};
+                         std::pow(10.0, 3.0 * unit(random) - 2.0) * Vector2d(unit(random), unit(random)),
+                         10.0, 10.0};
     const TangentForce t = tangent_force(f, s);
     const Vector2d direction(unit(random), unit(random));
     EXPECT_GE(direction.dot(t.by_sliding * direction), -1e-12 * t.by_sliding.norm());
@@ -164,9 +167,11 @@ TEST(MotionFriction, SlidesAlongItsVelocity) {
   for (const Vector2d& w : {Vector2d(0.3, 0.0), Vector2d(-0.1, 0.2)}) {
     s.sliding = w;
     const double dt = 1e-4 * f.bristle_time;
-    for (int k = 0; k < 400000; ++k) s.bristle += dt / s.elastic * bristle_flow(f, s, tangent_force(f, s), 0.0).flow;
-    EXPECT_LT((tangent_force(f, s).force - slip_coefficient(f, w.norm()).value * s.normal * w.normalized()).norm(),
-              1e-6);
+    for (int k = 0; k < 400000; ++k)
+      s.bristle += dt / s.elastic * bristle_flow(f, s, tangent_force(f, s), 0.0).flow;
+    EXPECT_LT(
+        (tangent_force(f, s).force - slip_coefficient(f, w.norm()).value * s.normal * w.normalized()).norm(),
+        1e-6);
   }
 }
 
@@ -226,8 +231,10 @@ struct Touching {
 };
 
 TEST(MotionFriction, JacobianMatchesDifferencesInStickAndSlip) {
-  for (const double stretch :
-       {0.3, 1.5}) {  // all that touches sticks, or slides: a derivative is not asked for where one becomes the other
+  for (
+      const double stretch :
+      {0.3,
+       1.5}) {  // all that touches sticks, or slides: a derivative is not asked for where one becomes the other
     SCOPED_TRACE(stretch);
     MotionFriction soft = papers_friction();
     // A bristle as soft as the wire's axial stiffness of 1e3/0.025, so that no row drowns the others.
@@ -304,7 +311,9 @@ Motion block_on_arch() {
   w.length = elements * 2.0 * radius * std::sin(half / elements);
   wire::RodInMotion rod = wire::rod_in_motion(w, 0.0, elements);
   rod.damping.bending_time = rod.damping.axial_time = 1e-4;
-  const auto place = [&](double a) -> Vector3d { return radius * Vector3d(std::sin(a), std::cos(a) - 1.0, 0.0); };
+  const auto place = [&](double a) -> Vector3d {
+    return radius * Vector3d(std::sin(a), std::cos(a) - 1.0, 0.0);
+  };
   const auto along = [](double a) { return Vector3d(std::cos(a), -std::sin(a), 0.0); };
   rod.properties.natural_curvature = {-1.0 / radius, 0.0};
   for (const double side : {-1.0, 1.0}) {
@@ -376,8 +385,10 @@ TEST(MotionFriction, WrongNumbersAreNamed) {
               HasSubstr("contact.friction.dynamic_coefficient = -0.1, must be >= 0"));
   EXPECT_THAT(message([](MotionFriction& f) { f.bristle_displacement = 0.0; }),
               HasSubstr("contact.friction.bristle_displacement = 0, must be > 0"));
-  EXPECT_THAT(message([](MotionFriction& f) { f.bristle_time = -1.0; }), HasSubstr("bristle_time = -1, must be > 0"));
-  EXPECT_THAT(message([](MotionFriction& f) { f.dynamic_speed = 0.0; }), HasSubstr("and < dynamic_speed, or both 0"));
+  EXPECT_THAT(message([](MotionFriction& f) { f.bristle_time = -1.0; }),
+              HasSubstr("bristle_time = -1, must be > 0"));
+  EXPECT_THAT(message([](MotionFriction& f) { f.dynamic_speed = 0.0; }),
+              HasSubstr("and < dynamic_speed, or both 0"));
   EXPECT_THAT(message([](MotionFriction& f) {
                 f.law = ContactFriction::smooth;
                 f.static_speed = f.dynamic_speed = 0.0;

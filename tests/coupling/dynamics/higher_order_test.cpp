@@ -61,7 +61,8 @@ class Held final : public numerics::DaePart {
 };
 
 /// Forces of a knife edge on the middle vertex of the declared wire at travels from where it touches [N].
-std::vector<double> pushed(Formulation formulation, int elements, double grading, const std::vector<double>& travels) {
+std::vector<double> pushed(Formulation formulation, int elements, double grading,
+                           const std::vector<double>& travels) {
   wire::RodInMotion rod = wire::rod_in_motion(validation::declared_specification(), span, elements);
   rod.formulation = formulation;
   rod.grading = grading;
@@ -125,9 +126,11 @@ Loads static_loads(wire::RodInMotion constants, int elements, Eigen::Matrix3Xd& 
   constants.elements = elements;
   const wire::SpatialRod rod(constants.mesh(), constants.properties);
   VectorXd q = VectorXd::Zero(rod.unknowns());
-  const Eigen::Matrix3Xd chord = straight_wire(constants, Vector3d::Zero(), constants.properties.right.position);
+  const Eigen::Matrix3Xd chord =
+      straight_wire(constants, Vector3d::Zero(), constants.properties.right.position);
   for (int i = 0; i <= elements; ++i)
-    q.segment<3>(4 * i) = chord.col(i) + 0.03 * std::pow(std::sin(EIGEN_PI * i / elements), 2) * Vector3d::UnitY();
+    q.segment<3>(4 * i) =
+        chord.col(i) + 0.03 * std::pow(std::sin(EIGEN_PI * i / elements), 2) * Vector3d::UnitY();
   wire::SpatialState state = rod.make_state(q, constants.controls());
   EXPECT_TRUE(wire::find_equilibrium(rod, state).usable());
   wire::RodAssembly assembly;
@@ -196,7 +199,8 @@ TEST(HigherOrderMotion, AWireAtRestStaysAtRest) {
     return false;
   });
   ASSERT_TRUE(r.report.usable()) << r.report.message;
-  EXPECT_LT((last - motion.wires[0].positions).cwiseAbs().maxCoeff(), 1e-9);  // a tenth of the tolerance of position
+  EXPECT_LT((last - motion.wires[0].positions).cwiseAbs().maxCoeff(),
+            1e-9);  // a tenth of the tolerance of position
 }
 
 /// A body of 8.9 kg with a pin of 6 mm at 0.1 m/s onto the middle of the declared wire.

@@ -85,9 +85,10 @@ TEST(LawWire, RingHasTheClosedForm) {
     const std::vector<multibody::Wrench> wrenches = part.wrenches(y);
     EXPECT_NEAR(w.p_to.cross(wrenches[1].force).z(), -tension * r, 1e-9 * tension) << degrees;
     EXPECT_NEAR(w.p_from.cross(wrenches[0].force).z(), tension * r, 1e-9 * tension) << degrees;
-    EXPECT_NEAR(part.load({0.0, y, y}).normal,
-                2.0 * tension * std::sin(0.5 * (theta - touch)) * (theta - touch > std::numbers::pi ? -1.0 : 1.0),
-                1e-9 * tension)
+    EXPECT_NEAR(
+        part.load({0.0, y, y}).normal,
+        2.0 * tension * std::sin(0.5 * (theta - touch)) * (theta - touch > std::numbers::pi ? -1.0 : 1.0),
+        1e-9 * tension)
         << degrees;
   }
 }
@@ -133,7 +134,8 @@ TEST(LawWire, MountThrowsTheShaftBack) {
   EXPECT_NEAR(kept(after.x()), kept(speed), 1e-4 * kept(speed));  // 5e-5; falls with the tolerances
   EXPECT_LT(after.x(), 0.0);
   EXPECT_NEAR(after.y(), 0.0, 1e-12);
-  EXPECT_NEAR(result.energy.dissipated, 10.0 * (speed * speed - after.x() * after.x()), 1e-4 * 10.0 * speed * speed);
+  EXPECT_NEAR(result.energy.dissipated, 10.0 * (speed * speed - after.x() * after.x()),
+              1e-4 * 10.0 * speed * speed);
   // Its force at rest.
   const WireAboutShaft wire(ring_wire(0.1, 2.0, 0.25));
   const double k = w.axial_stiffness / r;
@@ -193,7 +195,8 @@ TEST(LawWire, JacobianMatchesDifferences) {
     // In every other trial the shaft is pressed into a mount.
     if (trial % 2 == 1) {
       const Eigen::Matrix3d turned = multibody::rotation(y.segment<4>(b.quaternion()));
-      const Vector3d mount = y.segment<3>(a.position()) + multibody::rotation(y.segment<4>(a.quaternion())) * w.p_from;
+      const Vector3d mount =
+          y.segment<3>(a.position()) + multibody::rotation(y.segment<4>(a.quaternion())) * w.p_from;
       y.segment<3>(b.position()) = mount - turned * (X_BS.p + X_BS.R * Vector3d(4e-3, 2e-3, 0.0));
     }
     y[arm.coordinates()] *= 0.2;

@@ -43,8 +43,8 @@ TEST(Modes, FastestIsOfWhatOnlyDecaysToo) {
     motion.bushings = {bushing};
     const MotionOptions options = test::fine(1e-6, 1e-6);
     const SmallMotions small = small_motions_at(motion, options, simulate(motion, options).last);
-    const double fastest =
-        damping > 0.0 ? (damping + std::sqrt(damping * damping - 4.0 * 5000.0 * 3.0)) / 6.0 : std::sqrt(5000.0 / 3.0);
+    const double fastest = damping > 0.0 ? (damping + std::sqrt(damping * damping - 4.0 * 5000.0 * 3.0)) / 6.0
+                                         : std::sqrt(5000.0 / 3.0);
     ASSERT_TRUE(small.fastest);
     EXPECT_NEAR(*small.fastest, fastest, 1e-7 * fastest);
     EXPECT_NEAR(*small.largest_explicit_step(), 2.0 / fastest, 1e-7 / fastest);
@@ -72,7 +72,8 @@ TEST(Modes, OfABodyOnABushingAreThoseOfTheClosedForm) {
                                                                 {"visitor shift y", 1000.0},
                                                                 {"visitor shift z", 5000.0 / 3.0}}};
   for (std::size_t k = 0; k < modes.size(); ++k) {
-    EXPECT_NEAR(modes[k].frequency * two_pi, std::sqrt(expected[k].second), 1e-8 * std::sqrt(expected[k].second));
+    EXPECT_NEAR(modes[k].frequency * two_pi, std::sqrt(expected[k].second),
+                1e-8 * std::sqrt(expected[k].second));
     ASSERT_FALSE(modes[k].shares.empty());
     EXPECT_EQ(modes[k].shares[0].first, expected[k].first);
     EXPECT_NEAR(modes[k].shares[0].second, 1.0, 1e-9);
@@ -122,8 +123,8 @@ struct TautString {
 
   [[nodiscard]] static Motion motion(int elements) {
     Motion motion;
-    motion.wires.push_back(test::wire_between("string", Vector3d::Zero(), {length, 0.0, 0.0}, elements, strain,
-                                              wire::SpatialEnd::Kind::pin));
+    motion.wires.push_back(test::wire_between("string", Vector3d::Zero(), {length, 0.0, 0.0}, elements,
+                                              strain, wire::SpatialEnd::Kind::pin));
     wire::RodInMotion& rod = motion.wires[0].rod;
     rod.properties.bending_stiffness = rod.properties.second_bending_stiffness = 1e-7;
     rod.damping.bending_time = rod.damping.axial_time = 0.0;

@@ -23,8 +23,8 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double pin = 0.006, wire_radius = 0.001;  // [m]
-constexpr double length = 0.008;                    // that gives way: four diameters, more than both radii [m]
-constexpr double stiffness = 1e3 / length;          // [N/m]
+constexpr double length = 0.008;            // that gives way: four diameters, more than both radii [m]
+constexpr double stiffness = 1e3 / length;  // [N/m]
 
 /// A pin across the plane of the wire of 0.2 m, so deep in its left mount, from a direction.
 struct AtTheMount {
@@ -67,7 +67,8 @@ TEST(MountContact, GivesWayOverALengthOfShaftOrWire) {
 // F = EA/l d (1 + a d'), along the wire as from its side, where the last of the wire bears next to nothing.
 TEST(MountContact, PressesBackByItsDepthFromAnySide) {
   const double damping = ElasticFoundation{}.damping;
-  for (const Vector3d& from : {Vector3d(-1.0, 0.0, 0.0), Vector3d(-0.6, 0.8, 0.0), Vector3d(-0.6, -0.8, 0.0)}) {
+  for (const Vector3d& from :
+       {Vector3d(-1.0, 0.0, 0.0), Vector3d(-0.6, 0.8, 0.0), Vector3d(-0.6, -0.8, 0.0)}) {
     for (const double depth : {1e-7, 1e-6, 1e-5}) {
       for (const double speed : {0.0, 2e-3, -2e-3}) {
         const ContactPart::Sums s = [&] {
@@ -75,7 +76,8 @@ TEST(MountContact, PressesBackByItsDepthFromAnySide) {
           return t.contact.sums(t.y);
         }();
         const double expected = stiffness * depth * std::max(0.0, 1.0 + damping * speed);
-        EXPECT_LT((s.force + expected * from).norm(), 1e-3 * stiffness * depth) << from.transpose() << ' ' << depth;
+        EXPECT_LT((s.force + expected * from).norm(), 1e-3 * stiffness * depth)
+            << from.transpose() << ' ' << depth;
         EXPECT_LT((s.on_mounts[0] - s.force).norm(), 1e-3 * stiffness * depth);
         EXPECT_NEAR(s.lost_power, (expected - stiffness * depth) * speed, 1e-3 * stiffness * depth * 2e-3);
       }
@@ -91,7 +93,8 @@ TEST(MountContact, RubsAgainstWhatSlides) {
   AtTheMount t(Vector3d(-1.0, 0.0, 0.0), 1e-6, 0.0, friction);
   t.y.segment<3>(t.body.velocity()) = Vector3d(0.0, 0.03, 0.04);
   const Vector3d force = t.contact.sums(t.y).force;
-  EXPECT_LT((force - stiffness * 1e-6 * Vector3d(1.0, 0.25 * 0.6, 0.25 * 0.8)).norm(), 1e-3 * stiffness * 1e-6);
+  EXPECT_LT((force - stiffness * 1e-6 * Vector3d(1.0, 0.25 * 0.6, 0.25 * 0.8)).norm(),
+            1e-3 * stiffness * 1e-6);
 }
 
 // A pin that the wire points at has no direction along it: the derivatives hold there too.
@@ -129,7 +132,8 @@ TEST(MountContact, ReturnsABodyAsASpring) {
   });
   ASSERT_TRUE(r.report.usable()) << r.report.message;
   EXPECT_NEAR(last_speed, -speed, 1e-3 * speed);
-  EXPECT_NEAR(r.peak_force[0], speed * std::sqrt(mass * stiffness), 2e-3 * speed * std::sqrt(mass * stiffness));
+  EXPECT_NEAR(r.peak_force[0], speed * std::sqrt(mass * stiffness),
+              2e-3 * speed * std::sqrt(mass * stiffness));
   ASSERT_EQ(r.events.size(), 2u);
   EXPECT_NEAR(r.events[0].time, before, 2e-3 * half_period);
   EXPECT_NEAR(r.events[1].time - r.events[0].time, half_period, 5e-3 * half_period);

@@ -77,8 +77,8 @@ TEST(MountGive, ATautWireRestsWithTheTensionOfSpringsInSeries) {
   const double tension = 1e-3 / (0.199 / axial_stiffness + 1.0 / 2e4 + 1.0 / 5e4);
   double worst = 0.0;
   const MotionResult r = simulate(motion, test::fine(0.01, 1e-3), [&](const MotionSample& s) {
-    worst =
-        std::max({worst, std::abs(s.mount_forces[0].norm() - tension), std::abs(s.mount_forces[1].norm() - tension)});
+    worst = std::max(
+        {worst, std::abs(s.mount_forces[0].norm() - tension), std::abs(s.mount_forces[1].norm() - tension)});
     return false;
   });
   ASSERT_TRUE(r.report.usable()) << r.report.message;

@@ -114,7 +114,8 @@ TEST(Phases, GoOnFromACheckpointWithTheSameBits) {
   motion.phases[0].drives = {turning(3.0, 2.0, 0.1)};
   motion.phases[1].bounds = {angle_above(1.0)};
   motion.phases[1].hold = 0.05;
-  motion.phases[1].drives = {{0, 0, [](double, double angle) { return Drive::holding(angle, 1e3, 30.0, 40.0); }}};
+  motion.phases[1].drives = {
+      {0, 0, [](double, double angle) { return Drive::holding(angle, 1e3, 30.0, 40.0); }}};
   MotionOptions options;
   options.duration = 1.0;
   options.checkpoint_interval = 0.11;

@@ -51,10 +51,12 @@ Vector4d end_of(double radius, double angle, const Vector2d& force) {
   const double free = 0.5 * length - radius * angle, h = free / steps, EI = 0.048;
   Vector4d s(radius * std::sin(angle), radius * std::cos(angle), -angle, -1.0 / radius);
   const auto rate = [&](const Vector4d& a) -> Vector4d {
-    return {std::cos(a[2]), std::sin(a[2]), a[3], (force.x() * std::sin(a[2]) - force.y() * std::cos(a[2])) / EI};
+    return {std::cos(a[2]), std::sin(a[2]), a[3],
+            (force.x() * std::sin(a[2]) - force.y() * std::cos(a[2])) / EI};
   };
   for (int k = 0; k < steps; ++k) {
-    const Vector4d k1 = rate(s), k2 = rate(s + 0.5 * h * k1), k3 = rate(s + 0.5 * h * k2), k4 = rate(s + h * k3);
+    const Vector4d k1 = rate(s), k2 = rate(s + 0.5 * h * k1), k3 = rate(s + 0.5 * h * k2),
+                   k4 = rate(s + h * k3);
     s += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
   }
   return s;
@@ -65,7 +67,8 @@ Vector4d end_of(double radius, double angle, const Vector2d& force) {
 Vector3d lying(double radius) {
   const auto miss = [&](const Vector3d& u) -> Vector3d {
     const Vector4d e = end_of(radius, u[0], u.tail<2>());
-    return {(e[0] - ring * std::sin(0.5 * open)) / ring, (e[1] - ring * std::cos(0.5 * open)) / ring, e[3] * ring};
+    return {(e[0] - ring * std::sin(0.5 * open)) / ring, (e[1] - ring * std::cos(0.5 * open)) / ring,
+            e[3] * ring};
   };
   Vector3d u(0.3, -5.0, 5.0);
   for (int k = 0; k < 60; ++k) {
@@ -103,10 +106,12 @@ TEST(PressedStart, IsTheElasticaThatLiesOnItsWall) {
         constexpr int steps = 400;
         const double h = (s - radius * u[0]) / steps;
         const auto rate = [&](const Vector4d& b) -> Vector4d {
-          return {std::cos(b[2]), std::sin(b[2]), b[3], (u[1] * std::sin(b[2]) - u[2] * std::cos(b[2])) / 0.048};
+          return {std::cos(b[2]), std::sin(b[2]), b[3],
+                  (u[1] * std::sin(b[2]) - u[2] * std::cos(b[2])) / 0.048};
         };
         for (int k = 0; k < steps; ++k) {
-          const Vector4d k1 = rate(a), k2 = rate(a + 0.5 * h * k1), k3 = rate(a + 0.5 * h * k2), k4 = rate(a + h * k3);
+          const Vector4d k1 = rate(a), k2 = rate(a + 0.5 * h * k1), k3 = rate(a + 0.5 * h * k2),
+                         k4 = rate(a + h * k3);
           a += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
         }
         p = a.head<2>();

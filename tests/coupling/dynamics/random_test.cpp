@@ -27,7 +27,8 @@ using Eigen::Vector3d;
 using base::mm;
 constexpr double wire_radius = 0.75 * mm;
 
-std::shared_ptr<const ContactShape> random_shape(int kind, const std::function<double(double, double)>& between) {
+std::shared_ptr<const ContactShape> random_shape(int kind,
+                                                 const std::function<double(double, double)>& between) {
   switch (kind) {
     case 0:
       return std::make_shared<Ball>(between(2.0, 15.0) * mm);
@@ -42,7 +43,8 @@ std::shared_ptr<const ContactShape> random_shape(int kind, const std::function<d
     case 5:
       return std::make_shared<Capsule>(0.0, between(10.0, 60.0) * mm);
     default:
-      return std::make_shared<MeshShape>(test::cuboid(between(5.0, 40.0) * mm, between(5.0, 40.0) * mm, 10.0 * mm));
+      return std::make_shared<MeshShape>(
+          test::cuboid(between(5.0, 40.0) * mm, between(5.0, 40.0) * mm, 10.0 * mm));
   }
 }
 
@@ -63,7 +65,8 @@ TEST(SlowRandomMotions, EndWithTheirBalancesClosed) {
   for (int k = 0; k < 14; ++k) {
     SCOPED_TRACE(k);
     specification.length = between(175.5, 182.0) * mm;
-    wire::RodInMotion rod = wire::rod_in_motion(specification, 175.0 * mm, static_cast<int>(one_of({30, 47, 60})));
+    wire::RodInMotion rod =
+        wire::rod_in_motion(specification, 175.0 * mm, static_cast<int>(one_of({30, 47, 60})));
     rod.damping.bending_time = one_of({1e-6, 1e-5, 1e-4});
     rod.damping.axial_time = 1e-5;
     Motion motion;

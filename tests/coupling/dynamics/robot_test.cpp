@@ -54,10 +54,11 @@ MotionOptions fine(double duration) {
 
 double speed_after(double delay, double damping) {
   double v = 0.0;
-  const MotionResult result = simulate(robot_at_a_wall(delay, damping), fine(0.6), [&](const MotionSample& s) {
-    v = s.bodies[0].velocity.y();
-    return false;
-  });
+  const MotionResult result =
+      simulate(robot_at_a_wall(delay, damping), fine(0.6), [&](const MotionSample& s) {
+        v = s.bodies[0].velocity.y();
+        return false;
+      });
   EXPECT_TRUE(result.report.usable()) << result.report.message;
   return v;
 }
@@ -68,8 +69,12 @@ double speed_by_steps(double delay, double damping) {
   const int per_delay = 400;
   const double h = delay / per_delay;
   std::vector<double> force;  // at half steps
-  const auto law = [&](double d, double v) { return d > 0.0 ? std::max(0.0, stiffness * d + damping * v) : 0.0; };
-  const auto past = [&](std::size_t half) { return half >= 2u * per_delay ? force[half - 2u * per_delay] : 0.0; };
+  const auto law = [&](double d, double v) {
+    return d > 0.0 ? std::max(0.0, stiffness * d + damping * v) : 0.0;
+  };
+  const auto past = [&](std::size_t half) {
+    return half >= 2u * per_delay ? force[half - 2u * per_delay] : 0.0;
+  };
   double d = -0.005, v = speed;
   force.push_back(law(d, v));
   const auto steps = static_cast<std::size_t>(0.6 / h);
@@ -98,7 +103,8 @@ TEST(Robot, MovesAsTheDelayedEquation) {
   for (const double delay : {0.002, 0.01, 0.03}) {
     for (const double damping : {0.0, 60.0}) {
       const double expected = speed_by_steps(delay, damping);
-      EXPECT_NEAR(speed_after(delay, damping), expected, 2e-5 * std::abs(expected)) << delay << " " << damping;
+      EXPECT_NEAR(speed_after(delay, damping), expected, 2e-5 * std::abs(expected))
+          << delay << " " << damping;
     }
   }
 }

@@ -24,7 +24,8 @@ double thrust_between_pins(double stiffness, double length) {
   const auto excess = [length](double k) {
     return 2.0 * boost::math::ellint_2(k) / boost::math::ellint_1(k) - 1.0 - mounts_apart / length;
   };
-  const auto [low, high] = boost::math::tools::bisect(excess, 0.0, 0.9, boost::math::tools::eps_tolerance<double>(40));
+  const auto [low, high] =
+      boost::math::tools::bisect(excess, 0.0, 0.9, boost::math::tools::eps_tolerance<double>(40));
   const double K = boost::math::ellint_1(0.5 * (low + high));
   return 4.0 * K * K * stiffness / (length * length);
 }

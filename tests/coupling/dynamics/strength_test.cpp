@@ -110,11 +110,13 @@ TEST_P(BendingStrength, IsTheStressOfABentBeam) {
   rod.formulation = GetParam();
   // Edges of higher order bow: their length is that of the arc over their chord.
   const double turn = angle / edges;
-  const double bow = GetParam() == wire::Formulation::higher_order ? std::sin(0.5 * turn) / (0.5 * turn) : 1.0;
+  const double bow =
+      GetParam() == wire::Formulation::higher_order ? std::sin(0.5 * turn) / (0.5 * turn) : 1.0;
   Eigen::Matrix3Xd positions = Eigen::Matrix3Xd::Zero(3, edges + 1);
   for (int e = 0; e < edges; ++e) {
     const double a = turn * (e + 0.5);
-    positions.col(e + 1) = positions.col(e) + bow * rod.length / edges * Vector3d(std::cos(a), std::sin(a), 0.0);
+    positions.col(e + 1) =
+        positions.col(e) + bow * rod.length / edges * Vector3d(std::cos(a), std::sin(a), 0.0);
   }
   rod.properties.left.director = rod.properties.right.director = Vector3d::UnitZ();
   rod.properties.right.position = positions.rightCols<1>();
@@ -146,8 +148,9 @@ TEST(MassRate, IsRefusedForAWireWhoseMountMoves) {
   carrier.driven = true;
   motion.bodies.push_back(carrier);
   motion.mounts.push_back({"grip", 0, wire::End::left, {MotionCarrier::Kind::body, 0, 0}});
-  EXPECT_THAT(test::refusal([&] { return simulate(motion, short_run()); }),
-              HasSubstr("wire.damping.mass_rate = 5, must be 0: it drags against the world, which grip leaves"));
+  EXPECT_THAT(
+      test::refusal([&] { return simulate(motion, short_run()); }),
+      HasSubstr("wire.damping.mass_rate = 5, must be 0: it drags against the world, which grip leaves"));
 }
 
 }  // namespace

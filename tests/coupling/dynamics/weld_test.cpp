@@ -36,9 +36,10 @@ multibody::ElasticArm small_arm(bool floating, double stiffness, double damping)
   }
   for (int i = 0; i < 2; ++i) {
     const multibody::Pose X{Eigen::Matrix3d::Identity(), Vector3d(i == 0 ? 0.0 : 1.0, 0.0, 0.0)};
-    frame = arm.tree.add_moving(
-        frame, "link" + std::to_string(i), multibody::JointKind::revolute, Vector3d::Unit(2 - i), X,
-        multibody::SpatialInertia::about_centre(10.0, {0.5, 0.05, 0.0}, Vector3d(0.1, 0.9, 0.9).asDiagonal()));
+    frame = arm.tree.add_moving(frame, "link" + std::to_string(i), multibody::JointKind::revolute,
+                                Vector3d::Unit(2 - i), X,
+                                multibody::SpatialInertia::about_centre(
+                                    10.0, {0.5, 0.05, 0.0}, Vector3d(0.1, 0.9, 0.9).asDiagonal()));
     multibody::ElasticJoint joint;
     joint.name = "joint" + std::to_string(i);
     joint.body = arm.tree.size() - 1;
@@ -98,8 +99,8 @@ TEST(MotionLink, WeldJacobianMatchesDifferences) {
     const MotionBody held = block(3.0, {0.3, 0.4, 0.5}, Vector3d::Zero()),
                      other = block(2.0, {0.2, 0.3, 0.4}, Vector3d::Zero());
     BodyPart body(held, Vector3d::Zero(), options), second(other, Vector3d::Zero(), options);
-    const multibody::Pose X_BF{Eigen::AngleAxisd(0.4, Vector3d(1.0, 2.0, -1.0).normalized()).toRotationMatrix(),
-                               {0.9, 0.1, -0.2}};
+    const multibody::Pose X_BF{
+        Eigen::AngleAxisd(0.4, Vector3d(1.0, 2.0, -1.0).normalized()).toRotationMatrix(), {0.9, 0.1, -0.2}};
     WeldPart weld("weld", {arm, model.tree.size() - 1, X_BF}, body, {}, options);
     WeldPart next("next", {body, X_BF}, second, {}, options);
     numerics::DaeSystem system({&body, &second, &arm, &weld, &next});
@@ -135,7 +136,8 @@ void expect_mount_jacobian(wire::Formulation formulation, const MountGive& give 
       std::uniform_real_distribution<double> unit(-1.0, 1.0);
       VectorXd y = VectorXd::Zero(system.size()), rate(system.size());
       body.place(y);
-      Matrix3Xd positions = straight_wire(test::soft_wire(6), Vector3d::Zero(), {0.2, 0.0, 0.0}), velocities(3, 7);
+      Matrix3Xd positions = straight_wire(test::soft_wire(6), Vector3d::Zero(), {0.2, 0.0, 0.0}),
+                velocities(3, 7);
       // In the plane, where the carried frames have no holonomy and the Hessian is exact.
       for (int i = 0; i < 7; ++i) {
         positions.col(i) += 2e-3 * Vector3d(unit(random), unit(random), 0.0);
@@ -144,7 +146,8 @@ void expect_mount_jacobian(wire::Formulation formulation, const MountGive& give 
       rod.place(positions, velocities, y);
       y.segment<3>(body.velocity()) << 0.1, -0.2, 0.3;
       if (!driven) y.segment<3>(body.spin()) << 0.4, -0.3, 0.5;
-      y.segment(mount.multipliers(), mount.constraints()) = Vector3d(0.3, -0.5, 0.2).head(mount.constraints());
+      y.segment(mount.multipliers(), mount.constraints()) =
+          Vector3d(0.3, -0.5, 0.2).head(mount.constraints());
       for (double& v : rate) v = 0.1 * unit(random);
       expect_jacobian(system, y, rate, {body.quaternion()}, 1e-7);
     }
@@ -169,7 +172,8 @@ TEST(MotionLink, JacobianOfAMountThatGivesMatchesDifferences) {
 
 TEST(MotionLink, TwoWeldedBodiesAreOneRigidBody) {
   // Free flight of two welded blocks beside that of the composite body, by the same tolerances.
-  MotionBody a = block(2.0, {0.1, 0.2, 0.25}, {0.3, -0.1, 0.2}), b = block(3.0, {0.3, 0.15, 0.2}, {-0.4, 0.5, 0.1});
+  MotionBody a = block(2.0, {0.1, 0.2, 0.25}, {0.3, -0.1, 0.2}),
+             b = block(3.0, {0.3, 0.15, 0.2}, {-0.4, 0.5, 0.1});
   a.start.orientation = Eigen::AngleAxisd(0.7, Vector3d(1.0, -1.0, 0.5).normalized());
   const Vector3d spin(0.9, -1.1, 0.6), velocity(0.2, 0.1, -0.3);
   a.start.velocity = velocity + spin.cross(a.start.position);
@@ -238,7 +242,8 @@ TEST(MotionLink, ABodyOnAnArmIsPartOfItsLastLink) {
   weld.carrier = {MotionCarrier::Kind::arm, 0, tip_of(standing_arm)};
   welded.welds = {weld};
   MotionArm loaded = standing_arm;
-  loaded.arm.tree.add_fixed(tip_of(loaded), "block", {Eigen::Matrix3d::Identity(), {0.3, 0.2, -0.1}}, inertia);
+  loaded.arm.tree.add_fixed(tip_of(loaded), "block", {Eigen::Matrix3d::Identity(), {0.3, 0.2, -0.1}},
+                            inertia);
   whole.arms = {loaded};
   MotionSample a, b;
   const MotionOptions options = fine(2.0);
@@ -341,7 +346,8 @@ TEST(MotionLink, ASpinningFrameStretchesItsWireByTheCentrifugalForce) {
   EXPECT_NEAR(last.mount_forces[0].dot(along), -end, 2e-2 * std::abs(end));
   // In the carrier's frame the wire rests on its chord.
   for (int i = 0; i <= 20; ++i) {
-    const Vector3d x = last.bodies[0].orientation.inverse() * (last.wires[0].col(i) - last.bodies[0].position);
+    const Vector3d x =
+        last.bodies[0].orientation.inverse() * (last.wires[0].col(i) - last.bodies[0].position);
     EXPECT_LT(x.tail<2>().norm(), 1e-6);
   }
   EXPECT_LT(result.largest_drift, 1e-9);
@@ -360,7 +366,8 @@ TEST(MotionLink, MomentumAndEnergyOfAWireOnAFloatingArmStay) {
   rod.properties.right.position = {2.1, 0.1, 0.1};
   rod.properties.left.direction = rod.properties.right.direction = Vector3d::UnitZ();
   rod.properties.left.director = rod.properties.right.director = Vector3d::UnitX();
-  motion.wires = {{"wire", rod, straight_wire(rod, rod.properties.left.position, rod.properties.right.position), {}}};
+  motion.wires = {
+      {"wire", rod, straight_wire(rod, rod.properties.left.position, rod.properties.right.position), {}}};
   for (const wire::End end : wire::ends) {
     MotionMount mount;
     mount.end = end;
@@ -410,7 +417,8 @@ TEST(MotionLink, DrivesOfAnArmSwitchInAMotion) {
   MotionOptions options = fine(1.0);
   double before = 0.0, after = 0.0;
   const MotionResult result = simulate(motion, options, [&](const MotionSample& s) {
-    (s.time < 0.499 ? before : after) = std::max(s.time < 0.499 ? before : after, s.arms[0].state.motor_rate.norm());
+    (s.time < 0.499 ? before : after) =
+        std::max(s.time < 0.499 ? before : after, s.arms[0].state.motor_rate.norm());
     return false;
   });
   ASSERT_TRUE(result.report.usable()) << result.report.message;
@@ -434,7 +442,8 @@ MotionArm restless_arm() {
   limp.time = 1.0;
   limp.drives = {Drive::limp(), Drive::locked()};
   part.switches = {limp};
-  part.loads = {{tip_of(part), {Vector3d::Zero(), {0.0, 8.0, 5.0}}, 0.3, 0.4, multibody::TimedLoad::Shape::half_sine}};
+  part.loads = {
+      {tip_of(part), {Vector3d::Zero(), {0.0, 8.0, 5.0}}, 0.3, 0.4, multibody::TimedLoad::Shape::half_sine}};
   return part;
 }
 
@@ -511,7 +520,8 @@ TEST(MotionLink, AnArmGoesOnFromACheckpointToTheSameBits) {
 
 TEST(MotionLink, WrongLinksAreNamedAllAtOnce) {
   Motion motion;
-  motion.bodies = {block(1.0, Vector3d::Ones(), Vector3d::Zero()), block(1.0, Vector3d::Ones(), Vector3d::UnitX())};
+  motion.bodies = {block(1.0, Vector3d::Ones(), Vector3d::Zero()),
+                   block(1.0, Vector3d::Ones(), Vector3d::UnitX())};
   motion.bodies[1].driven = true;
   motion.wires = {
       {"wire", test::soft_wire(8), straight_wire(test::soft_wire(8), Vector3d::Zero(), {0.2, 0.0, 0.0}), {}}};

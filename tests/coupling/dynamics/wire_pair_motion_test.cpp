@@ -123,8 +123,8 @@ double taut_deflection(double force, double span, double tension_at_rest, double
     deflection = 0.0;
     for (int i = 0; i < steps; ++i) {
       const double x = 0.5 * span * (i + 0.5) / steps;
-      const double slope =
-          force / (2.0 * tension) * (1.0 - std::cosh(wave * (0.25 * span - x)) / std::cosh(0.25 * span * wave));
+      const double slope = force / (2.0 * tension) *
+                           (1.0 - std::cosh(wave * (0.25 * span - x)) / std::cosh(0.25 * span * wave));
       deflection += slope * 0.5 * span / steps;
       longer += slope * slope * 0.5 * span / steps;  // both halves of 1/2 int w'^2
     }
@@ -163,7 +163,9 @@ TEST(WirePairStatics, TautWiresPressAsTensionedBeamsDo) {
     ASSERT_TRUE(r.report.usable()) << r.report.message;
     EXPECT_LT(last.energy.kinetic, 1e-12);
     // Both bend alike, by half the overlap less what they sink in.
-    const auto deflection = [&](double force) { return taut_deflection(force, 0.2, 1e3 * strain, 1e3, 1e-3); };
+    const auto deflection = [&](double force) {
+      return taut_deflection(force, 0.2, 1e3 * strain, 1e3, 1e-3);
+    };
     const double wanted = 0.5 * (overlap + last.contacts[0].gap);
     double low = 0.01, high = 2.0;
     for (int k = 0; k < 60; ++k) (deflection(0.5 * (low + high)) < wanted ? low : high) = 0.5 * (low + high);
@@ -174,7 +176,8 @@ TEST(WirePairStatics, TautWiresPressAsTensionedBeamsDo) {
   }
   // Second order: an eighth of the wave length of the bend, sqrt(EI/T) = 7 mm, is met by 80 elements of 2.5 mm.
   EXPECT_LT(std::abs(errors[2]), 2e-3);
-  EXPECT_LT(std::abs(errors[2]), 0.4 * std::abs(errors[1])) << errors[0] << ' ' << errors[1] << ' ' << errors[2];
+  EXPECT_LT(std::abs(errors[2]), 0.4 * std::abs(errors[1]))
+      << errors[0] << ' ' << errors[1] << ' ' << errors[2];
   EXPECT_LT(std::abs(errors[1]), 0.01);
 }
 
@@ -190,7 +193,8 @@ Ride ride(double tilt, double coefficient) {
   motion.wires.push_back(wire_between("rider", {-0.05, 0.0, 0.0}, {0.05, 0.0, 0.0}, 20));
   free_ends(motion.wires[0]);
   for (const double x : {-0.02, 0.03}) {
-    motion.wires.push_back(wire_between(x < 0.0 ? "left" : "right", {x, -2e-3, -0.1}, {x, -2e-3, 0.1}, 20, 0.02));
+    motion.wires.push_back(
+        wire_between(x < 0.0 ? "left" : "right", {x, -2e-3, -0.1}, {x, -2e-3, 0.1}, 20, 0.02));
     motion.wires.back().rod.damping.mass_rate = 300.0;
     WirePair pair;
     pair.wires = {0, static_cast<int>(motion.wires.size()) - 1};
@@ -285,7 +289,8 @@ Motion snare_about_a_shaft(double turn, double time, int elements) {
   for (int w = 0; w < 3; ++w) {
     const double begin = 120.0 * degree * w;
     const Vector3d from = on_ring(begin, 0.5 * apart), to = on_ring(begin + open, -0.5 * apart);
-    MotionWire wire = wire_between(std::string("wire ") + "abc"[w], from, to, elements, 0.0, End::twisting_pin);
+    MotionWire wire =
+        wire_between(std::string("wire ") + "abc"[w], from, to, elements, 0.0, End::twisting_pin);
     wire.rod.length = 2.0 * ring * std::sin(84.0 * degree);
     wire.rod.damping.mass_rate = 0.0;
     // An arc of a circle of that length, by its half angle.

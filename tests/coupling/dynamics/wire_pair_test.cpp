@@ -73,7 +73,8 @@ std::unique_ptr<Pair> wavy(double angle, const MotionFriction& friction, double 
   std::mt19937 random(11);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   for (MotionWire& w : motion.wires) {
-    for (int i = 1; i < 8; ++i) w.positions.col(i) += 1e-3 * Vector3d(unit(random), 0.2 * unit(random), unit(random));
+    for (int i = 1; i < 8; ++i)
+      w.positions.col(i) += 1e-3 * Vector3d(unit(random), 0.2 * unit(random), unit(random));
   }
   auto made = std::make_unique<Pair>(motion);
   Pair& p = *made;
@@ -143,8 +144,8 @@ TEST(WirePair, JacobianMatchesDifferences) {
           p.y.segment<2>(z) = stretch * friction.bristle_displacement * Vector2d(0.6, -0.8);
         }
       }
-      const test::DerivativeError error =
-          test::compare_dae_jacobian(p.system, p.y, p.rate, Eigen::MatrixXd::Identity(p.y.size(), p.y.size()), 1e-4);
+      const test::DerivativeError error = test::compare_dae_jacobian(
+          p.system, p.y, p.rate, Eigen::MatrixXd::Identity(p.y.size(), p.y.size()), 1e-4);
       // Gauss's rule is exact for a gap that is a parabola: what is left is the share of the third order in it.
       EXPECT_LT(error.relative, 1e-5) << error.worst;
     }
@@ -203,7 +204,8 @@ TEST(WirePair, ARigidMotionOfBothIsNoSliding) {
   const Vector3d spin(0.0, 3.0, 0.0), velocity(0.3, 0.1, -0.2);
   for (const wire::RodPart* rod : {&p.first, &p.second}) {
     for (int i = 0; i <= 8; ++i)
-      p.y.segment<3>(rod->velocity_of(i)) = velocity + spin.cross(Vector3d(p.y.segment<3>(rod->position_of(i))));
+      p.y.segment<3>(rod->velocity_of(i)) =
+          velocity + spin.cross(Vector3d(p.y.segment<3>(rod->position_of(i))));
   }
   ASSERT_GT(p.sums().normal, 0.01);
   EXPECT_NEAR(p.sums().lost_power, 0.0, 1e-12);
@@ -261,7 +263,8 @@ TEST(WirePair, NearestPointsAreThoseOfSampledWires) {
   double least = 1.0;
   for (int i = 0; i <= 2000; ++i) {
     const Vector3d x = point(p.first, 0, 0.2 * i / 2000.0);
-    for (int j = 0; j <= 2000; ++j) least = std::min(least, (x - point(p.second, 1, 0.2 * j / 2000.0)).norm());
+    for (int j = 0; j <= 2000; ++j)
+      least = std::min(least, (x - point(p.second, 1, 0.2 * j / 2000.0)).norm());
   }
   EXPECT_NEAR(p.contact.search().nearest(p.y).gap, least - 1.7e-3, 2e-6);
 }

@@ -30,8 +30,9 @@ TEST_P(WrappedBall, IsTouchedAlongAnArc) {
   const Drag& drag = GetParam();
   constexpr double wire_radius = 0.001;
   const auto ball = std::make_shared<Ball>(drag.radius);
-  Motion motion = test::body_below(test::soft_wire(drag.elements), ball,
-                                   {drag.place, -drag.radius - 2.0 * wire_radius, 0.0}, drag.speed, drag.mass);
+  Motion motion =
+      test::body_below(test::soft_wire(drag.elements), ball,
+                       {drag.place, -drag.radius - 2.0 * wire_radius, 0.0}, drag.speed, drag.mass);
   MotionOptions options;
   // The wire stores little: balances to 1e-3 of it.
   options.body_velocity_tolerance = 1e-7;

@@ -26,7 +26,8 @@ class ScriptedPath final : public FollowedPath {
     if (outcome.kind == Kind::taken) at = to;
     return outcome;
   }
-  [[nodiscard]] numerics::SolveReport without_steps(double /*target*/, const numerics::SolveReport& last) override {
+  [[nodiscard]] numerics::SolveReport without_steps(double /*target*/,
+                                                    const numerics::SolveReport& last) override {
     gave_up = true;
     return last;
   }
@@ -117,7 +118,8 @@ class LaggingPath final : public RememberingPath {
     ++count;
     return {};
   }
-  [[nodiscard]] numerics::SolveReport without_steps(double /*target*/, const numerics::SolveReport& last) override {
+  [[nodiscard]] numerics::SolveReport without_steps(double /*target*/,
+                                                    const numerics::SolveReport& last) override {
     return last;
   }
   [[nodiscard]] std::function<void()> checkpoint() override {
@@ -182,13 +184,16 @@ TEST(OwnSteps, EndAtAnEventAndGoOnAsBefore) {
       at = to;
       return {};
     }
-    [[nodiscard]] numerics::SolveReport without_steps(double /*target*/, const numerics::SolveReport& last) override {
+    [[nodiscard]] numerics::SolveReport without_steps(double /*target*/,
+                                                      const numerics::SolveReport& last) override {
       return last;
     }
     [[nodiscard]] std::function<void()> checkpoint() override {
       return [this, now = at] { at = now; };
     }
-    [[nodiscard]] Measures measures() override { return {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)}; }
+    [[nodiscard]] Measures measures() override {
+      return {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)};
+    }
     double at = 0.0;
   } path;
   OwnSteps steps({0.01, 1e-6, 1e-9, 0.2});
@@ -199,7 +204,8 @@ TEST(OwnSteps, EndAtAnEventAndGoOnAsBefore) {
   };
   while (path.at < 1.0) ASSERT_TRUE(steps.advance(path, 1.0, keep).usable());
   EXPECT_TRUE(std::any_of(ends.begin(), ends.end(), [](double end) { return std::abs(end - 0.7) < 1e-9; }));
-  EXPECT_LT(ends.size(), 40u);  // doubled from 0.01 to 0.2, and again from a quarter of the step before the event
+  EXPECT_LT(ends.size(),
+            40u);  // doubled from 0.01 to 0.2, and again from a quarter of the step before the event
 }
 
 TEST(PathFollower, TakesNoStepBeyondTheLargest) {

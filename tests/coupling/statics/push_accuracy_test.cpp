@@ -101,9 +101,10 @@ TEST(PushAccuracy, CurveOverACylinderIsSmooth) {
     PushProblem test;
     double to;
   };
-  for (const Case& c :
-       {Case{declared_wire(40.0 * mm, 6.0 * mm), 4.0 * mm}, Case{declared_wire(65.0 * mm, 6.0 * mm), 4.0 * mm},
-        Case{declared_wire(90.0 * mm, 6.0 * mm), 4.0 * mm}, Case{test::soft_wire(65.0 * mm, 6.0 * mm), 6.0 * mm}}) {
+  for (const Case& c : {Case{declared_wire(40.0 * mm, 6.0 * mm), 4.0 * mm},
+                        Case{declared_wire(65.0 * mm, 6.0 * mm), 4.0 * mm},
+                        Case{declared_wire(90.0 * mm, 6.0 * mm), 4.0 * mm},
+                        Case{test::soft_wire(65.0 * mm, 6.0 * mm), 6.0 * mm}}) {
     PushProblem test = c.test;
     constexpr int n = 400;
     test.travel = test::travel_to(c.to, n);
@@ -178,7 +179,8 @@ TEST(PushAccuracy, EnergyIsTheWorkOfTheForce) {
   ASSERT_EQ(curve.points.size(), 33U);
   double work = 0.0;
   for (std::size_t i = 2; i < 33; i += 2)
-    work += (curve.points[i - 2].force + 4.0 * curve.points[i - 1].force + curve.points[i].force) * 1.0 * mm / 96.0;
+    work += (curve.points[i - 2].force + 4.0 * curve.points[i - 1].force + curve.points[i].force) * 1.0 * mm /
+            96.0;
   EXPECT_NEAR((curve.points.back().energy - curve.points.front().energy) / work, 1.0, 1e-4);
 }
 

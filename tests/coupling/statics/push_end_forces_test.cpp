@@ -73,7 +73,8 @@ std::array<Vector2d, 2> catenary(const Vector2d& weight, double length, double s
     const Vector2d miss = reach(n) - Vector2d(span, 0.0);
     Eigen::Matrix2d slope;
     for (int a = 0; a < 2; ++a)
-      slope.col(a) = (reach(n + step * Vector2d::Unit(a)) - reach(n - step * Vector2d::Unit(a))) / (2.0 * step);
+      slope.col(a) =
+          (reach(n + step * Vector2d::Unit(a)) - reach(n - step * Vector2d::Unit(a))) / (2.0 * step);
     n -= slope.inverse() * miss;
   }
   EXPECT_LT((reach(n) - Vector2d(span, 0.0)).norm(), 1e-12 * span);
@@ -174,14 +175,16 @@ TEST(PushEndForces, MountsThatGiveAgreeWithCollocation) {
 TEST(PushEndForces, ReactionsBalancePusherAndWeight) {
   std::vector<PushProblem> tests;
   for (const double radius : {0.0, 6.0 * mm}) {
-    for (const wire::MountKind kind : {wire::MountKind::clamped, wire::MountKind::pinned, wire::MountKind::supports}) {
+    for (const wire::MountKind kind :
+         {wire::MountKind::clamped, wire::MountKind::pinned, wire::MountKind::supports}) {
       for (const PushDirection direction : {PushDirection::outward, PushDirection::inward}) {
         PushProblem test = declared_wire(65.0 * mm, radius);
         test.mount.kind = kind;
         test.pusher.direction = direction;
         test.pusher.misalignment = kind == wire::MountKind::supports ? 0.0 : 0.1;
         test.pusher.friction = 0.15;
-        if (kind != wire::MountKind::supports) test.gravity = {2.0, -9.0, 0.0};  // else it may leave the supports
+        if (kind != wire::MountKind::supports)
+          test.gravity = {2.0, -9.0, 0.0};  // else it may leave the supports
         tests.push_back(test);
       }
     }
@@ -211,15 +214,18 @@ TEST(PushEndForces, ReactionsBalancePusherAndWeight) {
     const ExtrapolatedCurve push = solve_push_extrapolated(test, mesh(64));
     ASSERT_TRUE(push.curve.report.usable()) << push.curve.report.message;
     const double side = test.pusher.direction == PushDirection::outward ? 1.0 : -1.0;
-    const Vector2d m = side * Vector2d(std::sin(test.pusher.misalignment), std::cos(test.pusher.misalignment));
+    const Vector2d m =
+        side * Vector2d(std::sin(test.pusher.misalignment), std::cos(test.pusher.misalignment));
     const double mass = test.wire.mass_per_length() *
                         (test.mount.kind == wire::MountKind::supports ? test.mount.span : test.wire.length);
     for (const PushPoint& p : push.curve.points) {
-      Vector3d sum(p.reaction_along_left + p.reaction_along_right + p.force * m.x() + p.transverse_force * m.y(),
-                   p.reaction_across_left + p.reaction_across_right + p.force * m.y() - p.transverse_force * m.x(),
-                   p.reaction_z_left + p.reaction_z_right + p.axial_force);
+      Vector3d sum(
+          p.reaction_along_left + p.reaction_along_right + p.force * m.x() + p.transverse_force * m.y(),
+          p.reaction_across_left + p.reaction_across_right + p.force * m.y() - p.transverse_force * m.x(),
+          p.reaction_z_left + p.reaction_z_right + p.axial_force);
       const Vector3d weight = mass * Vector3d(test.gravity[0], test.gravity[1], test.gravity[2]);
-      const double largest = std::abs(p.force) + std::abs(p.reaction_along_left) + std::abs(p.reaction_across_left);
+      const double largest =
+          std::abs(p.force) + std::abs(p.reaction_along_left) + std::abs(p.reaction_across_left);
       // Newton's tolerance of 1e-10 and rounding, on the forces of every vertex and with the extrapolation's weights.
       EXPECT_LE((sum + weight).norm(), 1e-8 * largest) << p.travel;
     }

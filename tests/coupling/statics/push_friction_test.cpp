@@ -25,7 +25,8 @@ double loop_area(const PushCurve& curve) {
 }
 
 bool has(const PushCurve& curve, PushEvent::Kind kind) {
-  return std::any_of(curve.events.begin(), curve.events.end(), [kind](const PushEvent& e) { return e.kind == kind; });
+  return std::any_of(curve.events.begin(), curve.events.end(),
+                     [kind](const PushEvent& e) { return e.kind == kind; });
 }
 
 TEST(PushFriction, LoopClosesAndDissipatesItsArea) {
@@ -132,7 +133,8 @@ TEST(SlippingMount, CapsTheTensionAndBalancesTheEnergy) {
   const double stored = curve.points.back().energy - curve.points.front().energy;
   const double dissipated = curve.points.back().dissipated;
   EXPECT_GT(dissipated, 1e-3);
-  EXPECT_NEAR(work, stored + dissipated, 0.01 * dissipated);  // trapezoids, contact of second order in the mesh
+  EXPECT_NEAR(work, stored + dissipated,
+              0.01 * dissipated);  // trapezoids, contact of second order in the mesh
 }
 
 TEST(ElasticMounts, StiffOnesAreRigidAndSoftOnesTurnAsPins) {
@@ -161,11 +163,12 @@ TEST(Supports, ThreePointBendingOfAStiffWire) {
   test.mount.support_radius = 2.0 * mm;
   test.wire.length = 60.0 * mm;
   test.travel = {1e-3 * mm};
-  const double expected =
-      validation::three_point_stiffness(test.wire.bending_stiffness(), test.mount.span, test.contact_position) * 1e-3 *
-      mm;
+  const double expected = validation::three_point_stiffness(test.wire.bending_stiffness(), test.mount.span,
+                                                            test.contact_position) *
+                          1e-3 * mm;
   // Round supports shift the contact by R slope, 1e-4 of the span here.
-  EXPECT_NEAR(solve_push_extrapolated(test, PushOptions{}).curve.points.back().force, expected, 1e-3 * expected);
+  EXPECT_NEAR(solve_push_extrapolated(test, PushOptions{}).curve.points.back().force, expected,
+              1e-3 * expected);
   test.travel = test::travel_to(5.0 * mm, 10);
   const PushCurve deep = solve_push(test, mesh(128));
   ASSERT_TRUE(deep.report.usable()) << deep.report.message;

@@ -23,7 +23,8 @@ PushProblem three_point_bending(double span, double length) {
 }
 
 double stiffness(const PushCurve& curve, std::size_t from, std::size_t to) {
-  return (curve.points[to].force - curve.points[from].force) / (curve.points[to].travel - curve.points[from].travel);
+  return (curve.points[to].force - curve.points[from].force) /
+         (curve.points[to].travel - curve.points[from].travel);
 }
 
 // Small deflections: F = 48 EI w / l^3 while the strands stick, with EI + extra; the first slip, under the pusher,

@@ -58,8 +58,11 @@ TEST(InwardPush, StableBranchIsTakenOnRequest) {
 // planar extensible elastica. The branch may lean to either side; all meshes take the same one, and what is extrapolated is not mixed of both.
 TEST(InwardPush, BranchOfALeafSpringIsThatOfTheElasticaOnEveryMesh) {
   PushProblem test = inward(50.0 * mm, 1.0 * mm, 10);
-  test.wire = {
-      .diameter = 0.5 * mm, .length = 101.0 * mm, .youngs_modulus = 200e9, .poisson_ratio = 0.3, .density = 7850.0};
+  test.wire = {.diameter = 0.5 * mm,
+               .length = 101.0 * mm,
+               .youngs_modulus = 200e9,
+               .poisson_ratio = 0.3,
+               .density = 7850.0};
   test.mount.span = 100.0 * mm;
   test.pusher.radius = 0.0;
   for (const int elements : {64, 128, 256}) {
@@ -141,7 +144,8 @@ TEST(UnusualWires, TautStraightAndPretensionedOnesAreComputed) {
     test.travel = test::travel_to(1.0 * mm, 4);
     const PushCurve curve = solve_push(test, mesh(64));
     ASSERT_TRUE(curve.report.usable()) << curve.report.message;
-    for (std::size_t i = 1; i < curve.points.size(); ++i) EXPECT_GT(curve.points[i].force, curve.points[i - 1].force);
+    for (std::size_t i = 1; i < curve.points.size(); ++i)
+      EXPECT_GT(curve.points[i].force, curve.points[i - 1].force);
   }
 }
 
@@ -163,8 +167,8 @@ void random_runs(int count, unsigned seed) {
   };
   int finished = 0;
   for (int k = 0; k < count; ++k) {
-    PushProblem test =
-        declared_wire(175.0 * mm * uniform(0.1, 0.9), uniform(0.0, 1.0) < 0.3 ? 0.0 : uniform(0.5, 15.0) * mm);
+    PushProblem test = declared_wire(175.0 * mm * uniform(0.1, 0.9),
+                                     uniform(0.0, 1.0) < 0.3 ? 0.0 : uniform(0.5, 15.0) * mm);
     test.wire.length = 175.0 * mm * (1.0 + uniform(-0.002, 0.08));
     test.wire.bending_stiffness_override = test.wire.bending_stiffness() * std::pow(10.0, uniform(-2.5, 0.3));
     test.wire.axial_stiffness_override = test.wire.axial_stiffness() * std::pow(10.0, uniform(-1.0, 0.3));
@@ -188,8 +192,9 @@ void random_runs(int count, unsigned seed) {
       EXPECT_FALSE(curve.report.message.empty());
     }
     for (const PushPoint& p : curve.points) {
-      EXPECT_TRUE(std::isfinite(p.force) && std::isfinite(p.tension_left) && std::isfinite(p.contact_coordinate) &&
-                  std::isfinite(p.energy) && std::isfinite(p.dissipated))
+      EXPECT_TRUE(std::isfinite(p.force) && std::isfinite(p.tension_left) &&
+                  std::isfinite(p.contact_coordinate) && std::isfinite(p.energy) &&
+                  std::isfinite(p.dissipated))
           << "run " << k;
       EXPECT_GE(p.normal_force, -1e-6) << "run " << k;
     }

@@ -33,7 +33,8 @@ void expect_reasons(const PushProblem& test) {
   const ExtrapolatedCurve result = solve_push_extrapolated(test, mesh(64));
   EXPECT_NE(result.curve.report.usable(), !result.curve.report.message.empty());
   for (const PushPoint& p : result.curve.points) {
-    for (const double value : {p.force, p.tension_left, p.tension_right, p.energy, p.bending_moment, p.imbalance})
+    for (const double value :
+         {p.force, p.tension_left, p.tension_right, p.energy, p.bending_moment, p.imbalance})
       EXPECT_TRUE(std::isfinite(value)) << "at " << p.travel;
   }
 }
@@ -105,10 +106,11 @@ TEST(PushLimits, HighYieldStressGivesTheElasticAnswer) {
     int elements;
   };
   using enum wire::MountKind;
-  for (const Case& c :
-       {Case{clamped, 1.5, 180.0, 175.0, 65.0, 0.0, 2.0, 128}, Case{pinned, 0.5, 105.0, 100.0, 48.2, 0.0, 4.0, 128},
-        Case{pinned, 1.5, 180.0, 175.0, 78.8, 0.0, 0.5, 512}, Case{clamped, 0.5, 251.0, 250.0, 90.6, 0.2, 2.0, 128},
-        Case{pinned, 0.3, 178.0, 175.0, 138.6, 0.0, 4.0, 128}}) {
+  for (const Case& c : {Case{clamped, 1.5, 180.0, 175.0, 65.0, 0.0, 2.0, 128},
+                        Case{pinned, 0.5, 105.0, 100.0, 48.2, 0.0, 4.0, 128},
+                        Case{pinned, 1.5, 180.0, 175.0, 78.8, 0.0, 0.5, 512},
+                        Case{clamped, 0.5, 251.0, 250.0, 90.6, 0.2, 2.0, 128},
+                        Case{pinned, 0.3, 178.0, 175.0, 138.6, 0.0, 4.0, 128}}) {
     PushProblem test = test::declared_wire(c.position * mm, 0.0);
     test.mount.kind = c.kind;
     test.mount.span = c.span * mm;

@@ -26,7 +26,9 @@ std::vector<Number> numbers(const PushProblem& test) {
       {"EI",
        {[ei](PushProblem& t, double a) { t.wire.bending_stiffness_override = ei + a; }, 1e-3 * ei, 0.0},
        1e-3 * ei},
-      {"EA", {[ea](PushProblem& t, double a) { t.wire.axial_stiffness_override = ea + a; }, 1e-3 * ea, 0.0}, 1e-3 * ea},
+      {"EA",
+       {[ea](PushProblem& t, double a) { t.wire.axial_stiffness_override = ea + a; }, 1e-3 * ea, 0.0},
+       1e-3 * ea},
       {"length", {[](PushProblem& t, double a) { t.wire.length += a; }, 1e-7, 0.0}, 1e-6},
       {"span", {[](PushProblem& t, double a) { t.mount.span += a; }, 1e-7, 0.0}, 1e-6},
       {"position", {[](PushProblem& t, double a) { t.contact_position += a; }, 1e-7, 0.0}, 1e-5},
@@ -76,7 +78,8 @@ void expect_derivatives(const PushProblem& test, const std::vector<Number>& all,
     double worst = 0.0;
     double worst_travel = 0.0;
     for (std::size_t i = 0; i < curve.points.size(); ++i) {
-      const double difference = (sides[1].points.at(i).force - sides[0].points.at(i).force) / (2.0 * all[k].difference);
+      const double difference =
+          (sides[1].points.at(i).force - sides[0].points.at(i).force) / (2.0 * all[k].difference);
       largest = std::max(largest, std::abs(difference));
       const double error = std::abs(curve.points[i].force_by.at(k) - difference);
       if (error > worst) {
@@ -85,7 +88,8 @@ void expect_derivatives(const PushProblem& test, const std::vector<Number>& all,
       }
     }
     // Curves are solved to 1e-10 of their forces (a few hundred newtons).
-    EXPECT_LT(worst, tolerance * largest + 1e-7 / all[k].difference) << "at a travel of " << worst_travel / mm << " mm";
+    EXPECT_LT(worst, tolerance * largest + 1e-7 / all[k].difference)
+        << "at a travel of " << worst_travel / mm << " mm";
   }
 }
 
@@ -110,8 +114,10 @@ TEST(PushSensitivity, OfMountsThatGive) {
   test.travel = forth_and_back(0.2 * mm, 2.0 * mm, 6);
   std::vector<Number> all = numbers(test);
   std::erase_if(all, [](const Number& n) { return n.name == "radius"; });  // a knife edge has none
-  all.push_back({"mount", {[](PushProblem& t, double a) { *t.mount.translational_stiffness += a; }, 1e3, 0.0}, 1e3});
-  all.push_back({"clamp", {[](PushProblem& t, double a) { *t.mount.rotational_stiffness += a; }, 0.05, 0.0}, 0.05});
+  all.push_back(
+      {"mount", {[](PushProblem& t, double a) { *t.mount.translational_stiffness += a; }, 1e3, 0.0}, 1e3});
+  all.push_back(
+      {"clamp", {[](PushProblem& t, double a) { *t.mount.rotational_stiffness += a; }, 0.05, 0.0}, 0.05});
   all.push_back({"machine", {[](PushProblem& t, double a) { t.pusher.compliance += a; }, 1e-8, 0.0}, 1e-8});
   expect_derivatives(test, all, 1e-5);
 }
@@ -137,7 +143,8 @@ TEST(PushSensitivity, GoAlongWithASlippingMount) {
 
 TEST(PushSensitivity, GoAlongWithAnyMountThatSlips) {
   for (const wire::MountSlip kind : {wire::MountSlip::feeds, wire::MountSlip::slides}) {
-    for (const wire::SlipPlace place : {wire::SlipPlace::left, wire::SlipPlace::right, wire::SlipPlace::both}) {
+    for (const wire::SlipPlace place :
+         {wire::SlipPlace::left, wire::SlipPlace::right, wire::SlipPlace::both}) {
       SCOPED_TRACE(fmt::format("kind {} place {}", static_cast<int>(kind), static_cast<int>(place)));
       PushProblem test = declared_wire(65.0 * mm, 6.0 * mm);
       test.mount.slip_tension = 36.0;  // below the compression of the loose wire
@@ -157,11 +164,14 @@ TEST(PushSensitivity, GoAlongWithStrandsThatSlideOneAfterTheOther) {
   test.wire.strand_friction = wire::StrandFriction{0.02, 0.8, 1.5};
   test.travel = forth_and_back(0.2 * mm, 2.0 * mm, 9);
   std::vector<Number> all = numbers(test);
+  all.push_back({"extra",
+                 {[](PushProblem& t, double a) { t.wire.strand_friction->extra_stiffness += a; }, 1e-6, 0.0},
+                 1e-5});
+  all.push_back({"slip",
+                 {[](PushProblem& t, double a) { t.wire.strand_friction->slip_curvature += a; }, 1e-5, 0.0},
+                 1e-4});
   all.push_back(
-      {"extra", {[](PushProblem& t, double a) { t.wire.strand_friction->extra_stiffness += a; }, 1e-6, 0.0}, 1e-5});
-  all.push_back(
-      {"slip", {[](PushProblem& t, double a) { t.wire.strand_friction->slip_curvature += a; }, 1e-5, 0.0}, 1e-4});
-  all.push_back({"breadth", {[](PushProblem& t, double a) { t.wire.strand_friction->breadth += a; }, 1e-5, 0.0}, 1e-4});
+      {"breadth", {[](PushProblem& t, double a) { t.wire.strand_friction->breadth += a; }, 1e-5, 0.0}, 1e-4});
   // Vertex by vertex the sliders switch between two curves of the differences.
   for (Number& n : all) n.difference *= 0.1;
   expect_derivatives(test, all, 1e-3);
@@ -174,11 +184,14 @@ TEST(PushSensitivity, GoAlongWithSlidersOfTheSections) {
   test.wire.yielding = wire::Yielding{300e6, 0.02};
   test.travel = forth_and_back(0.2 * mm, 2.0 * mm, 9);
   std::vector<Number> all = numbers(test);
-  all.push_back({"yield", {[](PushProblem& t, double a) { t.wire.yielding->yield_stress += a; }, 1e3, 0.0}, 1e4});
   all.push_back(
-      {"extra", {[](PushProblem& t, double a) { t.wire.strand_friction->extra_stiffness += a; }, 1e-6, 0.0}, 1e-5});
-  all.push_back(
-      {"slip", {[](PushProblem& t, double a) { t.wire.strand_friction->slip_curvature += a; }, 1e-5, 0.0}, 1e-4});
+      {"yield", {[](PushProblem& t, double a) { t.wire.yielding->yield_stress += a; }, 1e3, 0.0}, 1e4});
+  all.push_back({"extra",
+                 {[](PushProblem& t, double a) { t.wire.strand_friction->extra_stiffness += a; }, 1e-6, 0.0},
+                 1e-5});
+  all.push_back({"slip",
+                 {[](PushProblem& t, double a) { t.wire.strand_friction->slip_curvature += a; }, 1e-5, 0.0},
+                 1e-4});
   // Vertex by vertex the sliders switch between two curves of the differences.
   for (Number& n : all) n.difference *= 0.1;
   expect_derivatives(test, all, 1e-3);
@@ -239,7 +252,8 @@ TEST(PushSensitivity, RateFormOfAStretchedString) {
   ASSERT_TRUE(curve.report.usable());
   for (const PushPoint& p : curve.points) {
     const double half = 0.5 * test.mount.span;
-    const double rate = p.travel / std::sqrt(half * half + p.travel * p.travel) / half;  // d strain / d travel
+    const double rate =
+        p.travel / std::sqrt(half * half + p.travel * p.travel) / half;  // d strain / d travel
     // The wire's two boundary layers of sqrt(EI/T) = 30 um carry what is left.
     EXPECT_NEAR(p.viscous_stiffness, test.wire.axial_stiffness() * rate * rate * test.mount.span,
                 2e-3 * p.viscous_stiffness);

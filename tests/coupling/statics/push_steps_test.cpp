@@ -166,7 +166,8 @@ TEST_P(PointsAskedFor, DoNotChangeTheForces) {
   // far below the error that the curve states.
   const double tolerance = 1e-7 * peak;
   EXPECT_LT(tolerance, *std::max_element(few.discretisation_error.begin(), few.discretisation_error.end()));
-  for (const std::vector<double>& travel : {there_and_back(one, 8), there_and_back(one, 28), at_random(one, common)}) {
+  for (const std::vector<double>& travel :
+       {there_and_back(one, 8), there_and_back(one, 28), at_random(one, common)}) {
     test.travel = travel;
     const ExtrapolatedCurve many = solve_push_extrapolated(test, options);
     ASSERT_TRUE(many.curve.report.usable()) << many.curve.report.message;
@@ -205,7 +206,8 @@ TEST_P(PointsAskedFor, HaveTheSameForcesInGivenSteps) {
   for (const PushPoint& p : own.points) peak = std::max(peak, std::abs(p.force));
   for (std::size_t i = 0; i < own.points.size(); ++i) {
     // Newton's method, and events that are located from another beginning: to 1e-9 of the span, 1e-6 of these forces.
-    EXPECT_NEAR(own.points[i].force, given.points[i].force, 2e-6 * peak) << own.points[i].travel / mm << " mm";
+    EXPECT_NEAR(own.points[i].force, given.points[i].force, 2e-6 * peak)
+        << own.points[i].travel / mm << " mm";
   }
   EXPECT_LE(given.newton_iterations, own.newton_iterations);  // without the estimates
 }
@@ -243,7 +245,8 @@ TEST(PathError, IsAtLeastTheDistanceToThePathOfShortSteps) {
 TEST(PathError, IsNoneWithoutAMemory) {
   PushProblem test = declared_wire(65.0 * mm, 6.0 * mm);
   test.travel = test::there_and_back(2.0 * mm, 4);
-  for (const double error : solve_push_with_path_error(test, mesh(32)).discretisation_error) EXPECT_EQ(error, 0.0);
+  for (const double error : solve_push_with_path_error(test, mesh(32)).discretisation_error)
+    EXPECT_EQ(error, 0.0);
 }
 
 // Swung to the height y at the pusher, an arch of the height a (a_p at the pusher) that its weight W pulls across has

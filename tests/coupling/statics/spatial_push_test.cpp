@@ -74,7 +74,8 @@ TEST(SpatialPush, TiltToEitherSideIsTheSame) {
   const PushCurve left = solve_push(test, mesh(64));
   ASSERT_TRUE(right.report.usable() && left.report.usable());
   for (std::size_t i = 1; i < right.points.size(); ++i) {
-    EXPECT_NEAR(right.points[i].force, left.points[i].force, 1e-7 * right.points[i].force);  // Newton's tolerance
+    EXPECT_NEAR(right.points[i].force, left.points[i].force,
+                1e-7 * right.points[i].force);  // Newton's tolerance
     EXPECT_NEAR(right.points[i].axial_force, -left.points[i].axial_force, 1e-6 * right.points[i].force);
   }
 }
@@ -101,8 +102,8 @@ TEST(SpatialPush, FrictionLoopDissipatesItsArea) {
   ASSERT_TRUE(loop.report.usable()) << loop.report.message;
   double area = 0.0;
   for (std::size_t i = 1; i < loop.points.size(); ++i) {
-    area +=
-        0.5 * (loop.points[i].force + loop.points[i - 1].force) * (loop.points[i].travel - loop.points[i - 1].travel);
+    area += 0.5 * (loop.points[i].force + loop.points[i - 1].force) *
+            (loop.points[i].travel - loop.points[i - 1].travel);
     EXPECT_GE(loop.points[i].dissipated, loop.points[i - 1].dissipated);
   }
   // One step of 100 lies across the reversal: 1/100 of the jump's share, and the mesh's own 1e-3.
@@ -118,7 +119,8 @@ TEST(SpatialPush, WhatIsNotComputedIsSaid) {
   test.travel = {1.0 * mm};
   const PushCurve curve = solve_push(test, mesh(64));
   EXPECT_FALSE(curve.report.usable());
-  EXPECT_EQ(curve.report.message, "a tilted pusher is computed for wires between clamps or pins that do not slip");
+  EXPECT_EQ(curve.report.message,
+            "a tilted pusher is computed for wires between clamps or pins that do not slip");
   EXPECT_TRUE(curve.points.empty());
 }
 

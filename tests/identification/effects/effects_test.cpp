@@ -18,7 +18,8 @@ using test::mm;
 /// A series of the strand-like wire, loaded and unloaded, without readings of its own.
 Series series_at(double position, double span, int readings) {
   Series s;
-  s.name = "s" + std::to_string(static_cast<int>(1e3 * position)) + "_" + std::to_string(static_cast<int>(1e4 * span));
+  s.name = "s" + std::to_string(static_cast<int>(1e3 * position)) + "_" +
+           std::to_string(static_cast<int>(1e4 * span));
   s.test = test::declared_wire(position, 6.0 * mm);
   s.test.wire.length = 176.0 * mm;
   s.test.wire.bending_stiffness_override = 0.024;
@@ -36,7 +37,8 @@ Series series_at(double position, double span, int readings) {
 std::vector<Series> three_positions_two_slacks() {
   std::vector<Series> all;
   for (const double span : {175.0 * mm, 175.5 * mm}) {
-    for (const double position : {40.0 * mm, 65.0 * mm, 90.0 * mm}) all.push_back(series_at(position, span, 15));
+    for (const double position : {40.0 * mm, 65.0 * mm, 90.0 * mm})
+      all.push_back(series_at(position, span, 15));
   }
   return all;
 }
@@ -136,7 +138,9 @@ TEST_P(EachEffect, DerivativeMatchesDifferences) {
   const Model model({series}, few_edges());
   const Evaluation here = model.evaluate({}, {&p});
   ASSERT_TRUE(here.complete) << here.message;
-  const auto force = [&](double coordinate) -> Eigen::VectorXd { return model.evaluate({{&p, coordinate}}).force[0]; };
+  const auto force = [&](double coordinate) -> Eigen::VectorXd {
+    return model.evaluate({{&p, coordinate}}).force[0];
+  };
   const double h = p.parametrisation == Parametrisation::shift ? 100.0 * p.step : p.step;
   const bool at_end = p.number.get(series.test, {}) <= p.limits(series.test).lower;
   Eigen::VectorXd difference;
@@ -155,7 +159,9 @@ TEST_P(EachEffect, DerivativeMatchesDifferences) {
 TEST(MountAxialCompliance, DerivativeAwayFromRigidMountsMatchesDifferences) {
   const Parameter& p = parameters().at("mount_axial_compliance.compliance_m_N");
   const Model model({series_at(40.0 * mm, 175.0 * mm, 15)}, few_edges());
-  const auto force = [&](double coordinate) -> Eigen::VectorXd { return model.evaluate({{&p, coordinate}}).force[0]; };
+  const auto force = [&](double coordinate) -> Eigen::VectorXd {
+    return model.evaluate({{&p, coordinate}}).force[0];
+  };
   constexpr double at = 2e-7;  // [m/N]; the wire itself gives 1e-6
   constexpr double h = 1e-9;
   const Evaluation here = model.evaluate({{&p, at}}, {&p});
@@ -177,12 +183,14 @@ TEST(MountsByThemselves, TogetherAreBothAndMirrorEachOther) {
   for (const Pair& pair :
        {Pair{"mount_axial_compliance.compliance_m_N", "mount_axial_compliance_left.compliance_m_N",
              "mount_axial_compliance_right.compliance_m_N", 1e-6},
-        Pair{"mount_rotational_compliance.compliance_rad_Nm", "mount_rotational_compliance_left.compliance_rad_Nm",
+        Pair{"mount_rotational_compliance.compliance_rad_Nm",
+             "mount_rotational_compliance_left.compliance_rad_Nm",
              "mount_rotational_compliance_right.compliance_rad_Nm", 0.5}}) {
     SCOPED_TRACE(pair.both);
     const Model near({series_at(40.0 * mm, 175.0 * mm, 15)}, few_edges());
     const Model far({series_at(135.0 * mm, 175.0 * mm, 15)}, few_edges());
-    const Setting left{&parameters().at(pair.left), pair.size}, right{&parameters().at(pair.right), pair.size};
+    const Setting left{&parameters().at(pair.left), pair.size},
+        right{&parameters().at(pair.right), pair.size};
     const Eigen::VectorXd both = near.evaluate({{&parameters().at(pair.both), pair.size}}).force[0];
     // The same numbers in the same places.
     EXPECT_EQ((near.evaluate({left, right}).force[0] - both).norm(), 0.0);
@@ -251,7 +259,8 @@ TEST(Effects, GravityIsAForceOffsetAtOnePosition) {
   const Model model(taut, few_edges());
   const Data data = data_of(model);
   Eigen::MatrixXd base(data.rows(), 2);
-  base << column(model, data, "wire.axial_stiffness_N"), column(model, data, "reading.displacement_offset_mm");
+  base << column(model, data, "wire.axial_stiffness_N"),
+      column(model, data, "reading.displacement_offset_mm");
   const Projection fitted(base);
   const Eigen::VectorXd weight = fitted.without(column(model, data, "gravity.along_bulge_m_s2"));
   const Eigen::VectorXd offset = fitted.without(column(model, data, "reading.force_offset_N"));
@@ -290,8 +299,8 @@ TEST(Effects, WhatCannotBeSeenIsSaid) {
   Series supported = series_at(20.0 * mm, 40.0 * mm, 15);
   supported.test.mount.kind = wire::MountKind::supports;
   supported.test.wire.length = 60.0 * mm;
-  for (const char* name :
-       {"wire_length", "mount_slip", "mount_axial_compliance", "mount_rotational_compliance", "natural_curvature"}) {
+  for (const char* name : {"wire_length", "mount_slip", "mount_axial_compliance",
+                           "mount_rotational_compliance", "natural_curvature"}) {
     EXPECT_FALSE(find_effect(name)->unobservable({supported}).empty()) << name;
   }
   EXPECT_FALSE(find_effect("rate_viscosity")->unobservable({supported}).empty());  // no times

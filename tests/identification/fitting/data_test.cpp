@@ -37,7 +37,8 @@ struct ThreeRecords {
       for (double& v : x) v = size * normal(random);
       return x;
     };
-    fit.settings = {{&parameters().at("wire.axial_stiffness_N"), 0.0}, {&parameters().at("wire.length_mm"), 0.0}};
+    fit.settings = {{&parameters().at("wire.axial_stiffness_N"), 0.0},
+                    {&parameters().at("wire.length_mm"), 0.0}};
     fit.free = 2;
     for (std::size_t k = 0; k < 3; ++k) {
       data.series.push_back(k);
@@ -49,7 +50,8 @@ struct ThreeRecords {
       data.noise.sigma.push_back(0.1);
       std::vector<double> height;
       for (int i = 0; i < kReadings; ++i) height.push_back(0.02 * i);
-      data.noise.filter.push_back(noise_filter(measured_displacement(model.series()[k]), 0.05, 0.5 * mm, height));
+      data.noise.filter.push_back(
+          noise_filter(measured_displacement(model.series()[k]), 0.05, 0.5 * mm, height));
     }
     for (const std::vector<std::size_t>& group : tests(model.series())) {
       Placing placing{group, kPlace, {}};
@@ -59,7 +61,8 @@ struct ThreeRecords {
   }
 
   /// L^-1 of the noise alone.
-  [[nodiscard]] MatrixXd white(const std::function<MatrixXd(std::size_t)>& forces, Eigen::Index columns) const {
+  [[nodiscard]] MatrixXd white(const std::function<MatrixXd(std::size_t)>& forces,
+                               Eigen::Index columns) const {
     Data noise = data;
     noise.placings.clear();
     return noise.whiten(forces, columns);
@@ -126,7 +129,8 @@ TEST(Data, PlacesAreNumbersWithATolerance) {
   r.fit.jacobian = r.data.jacobian(r.fit.evaluation);
   r.fit.covariance = covariance_of(r.fit.jacobian);
   EXPECT_LT((r.fit.covariance - covariance.topLeftCorner(2, 2)).norm(), 1e-11 * covariance.norm());
-  const VectorXd numbers = r.fit.covariance * (r.fit.jacobian.transpose() * r.data.residual(r.fit.evaluation));
+  const VectorXd numbers =
+      r.fit.covariance * (r.fit.jacobian.transpose() * r.data.residual(r.fit.evaluation));
   EXPECT_LT((numbers - found.head(2)).norm(), 1e-11 * found.norm());
   for (std::size_t k = 0; k < 3; ++k) r.fit.evaluation.force[k] += r.fit.evaluation.by[k] * numbers;
   EXPECT_NEAR(r.data.residual(r.fit.evaluation).squaredNorm(), (all * found - wanted).squaredNorm(), 1e-10);

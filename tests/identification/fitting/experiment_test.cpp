@@ -59,17 +59,18 @@ TEST(Experiment, TheModulusMayBeLeftOutBesideTheStiffnesses) {
   EXPECT_EQ(wire.poisson_ratio, 0.3);
   EXPECT_NEAR(wire.youngs_modulus * 0.25 * std::numbers::pi * std::pow(wire.diameter, 2), 2e4, 1e-9 * 2e4);
   const std::string said = test::refusal([&] {
-    return parse_experiment("x.toml", edited("youngs_modulus_GPa = 193.0\n", "bending_stiffness_Nm2 = 0.01\n"),
-                            parameters());
+    return parse_experiment(
+        "x.toml", edited("youngs_modulus_GPa = 193.0\n", "bending_stiffness_Nm2 = 0.01\n"), parameters());
   });
   EXPECT_NE(said.find("wire.youngs_modulus_GPa, missing"), std::string::npos) << said;
 }
 
 TEST(Experiment, ANumberOfEverySeries) {
-  const Experiment e = parse_experiment(
-      "x.toml",
-      edited("heldout = [\"s65\"]", "per_series = [\"reading.displacement_offset_mm\"]\nmodel_tolerance = 0.02"),
-      parameters());
+  const Experiment e =
+      parse_experiment("x.toml",
+                       edited("heldout = [\"s65\"]",
+                              "per_series = [\"reading.displacement_offset_mm\"]\nmodel_tolerance = 0.02"),
+                       parameters());
   EXPECT_EQ(e.free, (std::vector<std::string>{"wire.length_mm", "reading.force_gain",
                                               "series[s40].reading.displacement_offset_mm",
                                               "series[s65].reading.displacement_offset_mm"}));
@@ -99,7 +100,8 @@ TEST(Experiment, ValidFileIsReadInSi) {
                test.wire.torsional_stiffness_override);
   EXPECT_EQ(test.mount.kind, wire::MountKind::clamped);
   EXPECT_EQ(test.mount.span, 0.175);
-  EXPECT_FALSE(test.mount.translational_stiffness || test.mount.rotational_stiffness || test.mount.slip_tension);
+  EXPECT_FALSE(test.mount.translational_stiffness || test.mount.rotational_stiffness ||
+               test.mount.slip_tension);
   EXPECT_EQ(test.pusher.radius, 0.006);
   EXPECT_EQ(test.pusher.friction, 0.0);
   EXPECT_EQ(test.pusher.direction, coupling::PushDirection::outward);
@@ -128,7 +130,9 @@ TEST(Experiment, ValidFileIsReadInSi) {
 // R2 counts as rounded to four decimals, or to as many as it has, unless the file says otherwise.
 TEST(Experiment, DecimalsOfR2) {
   const auto digits = [](const std::vector<Override>& changes) {
-    return parse_experiment("x.toml", valid_experiment, parameters(), changes).series[1].law->r_squared_digits;
+    return parse_experiment("x.toml", valid_experiment, parameters(), changes)
+        .series[1]
+        .law->r_squared_digits;
   };
   EXPECT_EQ(digits({}), 4);
   EXPECT_EQ(digits({{"series[2].law.R2", "0.99876"}}), 5);
@@ -137,9 +141,9 @@ TEST(Experiment, DecimalsOfR2) {
   EXPECT_EQ(digits({{"series[2].law.R2_digits", "2"}}), 2) << "fewer than R2 has: a wider interval";
   const std::string said = test::refusal([&] { return digits({{"series[2].law.R2_digits", "0"}}); });
   EXPECT_NE(said.find("R2_digits = 0, must be"), std::string::npos) << said;
-  EXPECT_EQ(
-      parse_experiment("x.toml", valid_experiment, parameters(), {{"fit.published_scatter", "each"}}).published_scatter,
-      PublishedScatter::each);
+  EXPECT_EQ(parse_experiment("x.toml", valid_experiment, parameters(), {{"fit.published_scatter", "each"}})
+                .published_scatter,
+            PublishedScatter::each);
 }
 
 TEST(Experiment, EveryOptionalKeyIsRead) {
@@ -183,12 +187,12 @@ TEST(Experiment, EveryOptionalKeyIsRead) {
 }
 
 TEST(Experiment, SeriesOverridesTheFile) {
-  const Experiment experiment =
-      parse_experiment("x.toml",
-                       edited("points = 21",
-                              "points = 21\nmount.span_mm = 174\nwire.length_mm = 173\npusher.direction = 'inward'\n"
-                              "bulge.mode = 2\ngravity.vector_m_s2 = [0, 0, -9.81]"),
-                       parameters());
+  const Experiment experiment = parse_experiment(
+      "x.toml",
+      edited("points = 21",
+             "points = 21\nmount.span_mm = 174\nwire.length_mm = 173\npusher.direction = 'inward'\n"
+             "bulge.mode = 2\ngravity.vector_m_s2 = [0, 0, -9.81]"),
+      parameters());
   EXPECT_EQ(experiment.series[0].test.mount.span, 0.174);
   EXPECT_EQ(experiment.series[0].test.wire.length, 0.173);  // less than 1 % shorter than its own span
   EXPECT_EQ(experiment.series[0].test.pusher.direction, coupling::PushDirection::inward);
@@ -202,13 +206,16 @@ TEST(Experiment, SeriesOverridesTheFile) {
 TEST(Experiment, KeyThatEverySeriesGivesMayBeAbsentFromTheFile) {
   std::string text = edited("span_mm = 175.0\n", "");
   EXPECT_THROW(static_cast<void>(parse_experiment("x.toml", text, parameters())), InputError);
-  const std::vector<Override> spans{{"series[s40].mount.span_mm", "174"}, {"series[s65].mount.span_mm", "175"}};
+  const std::vector<Override> spans{{"series[s40].mount.span_mm", "174"},
+                                    {"series[s65].mount.span_mm", "175"}};
   EXPECT_EQ(parse_experiment("x.toml", text, parameters(), spans).series[1].test.mount.span, 0.175);
 }
 
 TEST(Experiment, OverridesOfTheCommandAreCheckedAndNamed) {
   const auto message = [](const std::string& key, const std::string& value) -> std::string {
-    return test::refusal([&] { return parse_experiment("x.toml", valid_experiment, parameters(), {{key, value}}); });
+    return test::refusal([&] {
+      return parse_experiment("x.toml", valid_experiment, parameters(), {{key, value}});
+    });
   };
   const Experiment changed = parse_experiment("x.toml", valid_experiment, parameters(),
                                               {{"wire.length_mm", "181"},
@@ -221,11 +228,14 @@ TEST(Experiment, OverridesOfTheCommandAreCheckedAndNamed) {
   EXPECT_EQ(changed.series[1].test.mount.kind, wire::MountKind::pinned);
   EXPECT_EQ(changed.solver.elements, 32);
   EXPECT_EQ(message("wire.length_mm", "-1"), "--set: wire.length_mm = -1, must be > 0 and <= 100000");
-  EXPECT_EQ(message("wire.length_mm", "long"), "--set: wire.length_mm = long, must be a number > 0 and <= 100000");
+  EXPECT_EQ(message("wire.length_mm", "long"),
+            "--set: wire.length_mm = long, must be a number > 0 and <= 100000");
   EXPECT_EQ(message("wire.length_mm", "170"),
             "--set: wire.length_mm = 170, must be >= 173.25, 99 % of the span of 175 mm");
-  EXPECT_EQ(message("wire.lenght_mm", "181"), "--set: wire.lenght_mm = 181, unknown key; did you mean length_mm?");
-  EXPECT_EQ(message("series[s90].points", "5"), "--set: series[s90].points = 5, no such series; there are: s40, s65");
+  EXPECT_EQ(message("wire.lenght_mm", "181"),
+            "--set: wire.lenght_mm = 181, unknown key; did you mean length_mm?");
+  EXPECT_EQ(message("series[s90].points", "5"),
+            "--set: series[s90].points = 5, no such series; there are: s40, s65");
   EXPECT_EQ(message("mount.span_mm", "186"),
             "x.toml:7: wire.length_mm = 180.0, must be >= 184.14, 99 % of the span of 186 mm");
 }
@@ -244,12 +254,14 @@ TEST_F(ExperimentFiles, ReadingsAreReadInTheOrderInWhichTheyWereTaken) {
 
 // Exports of testing machines: names, units and the sign of a load cell that counts compression negative.
 TEST_F(ExperimentFiles, ColumnsAreNamedAndScaledByTheSeries) {
-  write_text(path("s40.csv"), "Standardweg;Standardkraft;Zeit\nmm;kN;s\n0,0;-0,001;0\n1,5;-0,025;1\n0,5;-0,0125;2\n");
+  write_text(path("s40.csv"),
+             "Standardweg;Standardkraft;Zeit\nmm;kN;s\n0,0;-0,001;0\n1,5;-0,025;1\n0,5;-0,0125;2\n");
   const auto read = [&](const std::string& columns, const std::string& scale) {
     return read_experiment(path("x.toml"), parameters(),
                            {{"series[s40].columns", columns}, {"series[s40].scale", scale}});
   };
-  const std::string names = "{ Standardweg = \"displacement_mm\", Standardkraft = \"force_N\", Zeit = \"time_s\" }";
+  const std::string names =
+      "{ Standardweg = \"displacement_mm\", Standardkraft = \"force_N\", Zeit = \"time_s\" }";
   const Series series = read(names, "{ Standardkraft = -1000.0 }").series[0];
   ASSERT_TRUE(series.readings.has_value());
   EXPECT_EQ(series.readings->displacement, (std::vector<double>{0.0, 0.0015, 0.0005}));
@@ -259,7 +271,8 @@ TEST_F(ExperimentFiles, ColumnsAreNamedAndScaledByTheSeries) {
     return message({{"series[s40].columns", columns}, {"series[s40].scale", scale}});
   };
   EXPECT_EQ(message({{"series[s40].columns", names}}),
-            "s40.csv:2: Standardkraft, is in kN, not in that of force_N: write scale = { \"Standardkraft\" = 1000 }");
+            "s40.csv:2: Standardkraft, is in kN, not in that of force_N: write scale = { \"Standardkraft\" = "
+            "1000 }");
   EXPECT_THAT(said("{ force_N = \"Standardkraft\" }", "{ force_N = 2.0 }"),
               testing::HasSubstr("stands the wrong way round: { \"Standardkraft\" = \"force_N\" }"));
   EXPECT_THAT(said("{ Standardkraft = \"force_kN\" }", "{ force_N = 2.0 }"),
@@ -270,7 +283,8 @@ TEST_F(ExperimentFiles, ColumnsAreNamedAndScaledByTheSeries) {
   EXPECT_THAT(said(names, "{ Zeit = -1.0 }"), testing::HasSubstr("must be > 0"));
   EXPECT_THAT(said(names, "{ Kraft = 1000.0 }"),
               testing::HasSubstr("must be a column that is read: Standardweg, Standardkraft or Zeit"));
-  EXPECT_THAT(said("3", "{ Zeit = 2.0 }"), testing::HasSubstr("must be a table of columns and what they are"));
+  EXPECT_THAT(said("3", "{ Zeit = 2.0 }"),
+              testing::HasSubstr("must be a table of columns and what they are"));
   EXPECT_THAT(message({{"series[s65].scale", "{ force_N = 2.0 }"}}), testing::HasSubstr("only with file"));
 }
 
@@ -278,23 +292,29 @@ TEST_F(ExperimentFiles, WrongReadingsHaveTheirMessage) {
   const std::string header = "displacement_mm,force_N\n";
   EXPECT_EQ(message(), "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: no such file");
   EXPECT_EQ(message_of_csv(""),
-            "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: is empty, must have a header that names the columns");
-  EXPECT_EQ(message_of_csv(header), "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: has a header but no rows");
+            "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: is empty, must have a header that names the "
+            "columns");
+  EXPECT_EQ(message_of_csv(header),
+            "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: has a header but no rows");
   EXPECT_EQ(message_of_csv(header + "0,0\n1,1\n"),
             "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: has 2 rows, must have at least 3");
   EXPECT_EQ(message_of_csv(header + "1,0\n1,1\n1,2\n"),
             "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: displacement_mm is the same in every row");
   EXPECT_EQ(message_of_csv("displacement_mm\n1\n2\n3\n"),
-            "s40.csv:1: force_N, no such column; the file has \"displacement_mm\"; name it: columns = { \"COLUMN\" = "
+            "s40.csv:1: force_N, no such column; the file has \"displacement_mm\"; name it: columns = { "
+            "\"COLUMN\" = "
             "\"force_N\" }");
   EXPECT_EQ(message_of_csv(header + "0,0\n1,one\n2,2\n"), "s40.csv:3: force_N = one, must be a number");
-  EXPECT_EQ(message_of_csv(header + "0,0\n1,NaN\n2,2\n"), "s40.csv:3: force_N = NaN, must be a finite number");
+  EXPECT_EQ(message_of_csv(header + "0,0\n1,NaN\n2,2\n"),
+            "s40.csv:3: force_N = NaN, must be a finite number");
   EXPECT_EQ(message_of_csv(header + "0,0\n1001,1\n2,2\n"),
             "s40.csv:3: displacement_mm = 1001, must be >= -1000 and <= 1000");
   EXPECT_EQ(message_of_csv("time_s," + header + "0,0,0\n2,1,1\n1,2,2\n"),
             "s40.csv:4: time_s = 1, must be >= 2, the value of the row before");
-  EXPECT_EQ(message_of_csv(header + "0,0\n\xFE,1\n2,2\n"), "s40.csv:3: byte 0xfe is not UTF-8: save the file as UTF-8");
-  EXPECT_EQ(message({{"series[s40].file", "gone.csv"}}), "--set: series[s40].file = gone.csv, gone.csv: no such file");
+  EXPECT_EQ(message_of_csv(header + "0,0\n\xFE,1\n2,2\n"),
+            "s40.csv:3: byte 0xfe is not UTF-8: save the file as UTF-8");
+  EXPECT_EQ(message({{"series[s40].file", "gone.csv"}}),
+            "--set: series[s40].file = gone.csv, gone.csv: no such file");
   std::filesystem::remove(path("s40.csv"));
   std::filesystem::create_directory(path("s40.csv"));
   EXPECT_EQ(message(), "x.toml:25: series[s40].file = \"s40.csv\", s40.csv: is a directory, must be a file");
@@ -337,7 +357,8 @@ TEST(QuadraticLaw, ScatterIsThatOfReadingsWithThisR2) {
 
 TEST(WireSpecification, StiffnessOfTheSolidRoundSection) {
   // Stated beside the published experiment: EI = 0.04796 N m^2, EA = 341.06 kN; half a unit of the last digit.
-  const wire::WireSpecification wire = parse_experiment("x.toml", valid_experiment, parameters()).series[0].test.wire;
+  const wire::WireSpecification wire =
+      parse_experiment("x.toml", valid_experiment, parameters()).series[0].test.wire;
   EXPECT_NEAR(wire.bending_stiffness(), 0.04796, 0.5e-5);
   EXPECT_NEAR(wire.axial_stiffness(), 341.06e3, 5.0);
   // G J with G = E / (2 (1 + nu)) and J = pi d^4 / 32, 1e-12: roundings only.
@@ -348,8 +369,8 @@ TEST(WireSpecification, StiffnessOfTheSolidRoundSection) {
 }
 
 TEST(PublishedExperiment, IsValid) {
-  const Experiment experiment =
-      read_experiment(std::filesystem::path(SNARE_SOURCE_DIR) / "data/experiments/published_static.toml", parameters());
+  const Experiment experiment = read_experiment(
+      std::filesystem::path(SNARE_SOURCE_DIR) / "data/experiments/published_static.toml", parameters());
   ASSERT_EQ(experiment.series.size(), 3u);
   const double positions[] = {0.040, 0.065, 0.090};
   for (std::size_t i = 0; i < 3; ++i) {

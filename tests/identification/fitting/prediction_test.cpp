@@ -16,7 +16,8 @@ namespace {
 
 using test::mm;
 
-Series series_of(const coupling::PushProblem& test, double offset, double sigma, unsigned seed, int points = 20) {
+Series series_of(const coupling::PushProblem& test, double offset, double sigma, unsigned seed,
+                 int points = 20) {
   Series series;
   series.name = "s";
   series.test = test;
@@ -27,7 +28,8 @@ Series series_of(const coupling::PushProblem& test, double offset, double sigma,
     readings.displacement.push_back(d);
     if (d > offset) travel.push_back(d - offset);
   }
-  const std::vector<validation::ElasticaState> states = validation::push_path(test::elastica_of(test), travel);
+  const std::vector<validation::ElasticaState> states =
+      validation::push_path(test::elastica_of(test), travel);
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 1.0);
   readings.force.assign(readings.displacement.size() - travel.size(), 0.0);
@@ -110,10 +112,11 @@ TEST(Model, SettingsMoveEverySeriesFromItsOwnDeclaration) {
   series[1].test.wire.length = 179.0 * mm;
   series[1].test.wire.axial_stiffness_override = 1e5;
   const Model model(series, few_edges());
-  const Model::Applied applied = model.apply({{&parameters().at("wire.length_mm"), 1e-3},
-                                              {&parameters().at("wire.axial_stiffness_N"), std::log(2.0)},
-                                              {&parameters().at("contact_position.shift_mm"), -2e-3},
-                                              {&parameters().at("series[b].reading.displacement_offset_mm"), 5e-4}});
+  const Model::Applied applied =
+      model.apply({{&parameters().at("wire.length_mm"), 1e-3},
+                   {&parameters().at("wire.axial_stiffness_N"), std::log(2.0)},
+                   {&parameters().at("contact_position.shift_mm"), -2e-3},
+                   {&parameters().at("series[b].reading.displacement_offset_mm"), 5e-4}});
   EXPECT_NEAR(applied.series[0].test.wire.length, 181.0 * mm, 1e-15);
   EXPECT_NEAR(applied.series[1].test.wire.length, 180.0 * mm, 1e-15);
   EXPECT_NEAR(applied.series[1].test.wire.axial_stiffness(), 2e5, 1e-9);
@@ -141,7 +144,8 @@ TEST(Model, DerivativesOfTheRecordMatchDifferences) {
     const double h = 1e-4 * std::abs(at[k].coordinate);
     up[k].coordinate += h;
     down[k].coordinate -= h;
-    const Eigen::VectorXd difference = (model.evaluate(up).force[0] - model.evaluate(down).force[0]) / (2.0 * h);
+    const Eigen::VectorXd difference =
+        (model.evaluate(up).force[0] - model.evaluate(down).force[0]) / (2.0 * h);
     EXPECT_LT((here.by[0].col(static_cast<Eigen::Index>(k)) - difference).norm(), 1e-6 * difference.norm())
         << by[k]->key;
   }
@@ -235,7 +239,8 @@ TEST(LeastSquares, AtTheEndsOfAProfileAFitOfTheOthersHasRisenByWhatWasAsked) {
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
         const Fit beside = fit(model, h.data, others, {{f.settings[which].parameter, *end}});
         ASSERT_TRUE(beside.report.usable());
-        EXPECT_NEAR((beside.chi2 - f.chi2) / rise, 1.0, 0.1) << sigma << " " << f.settings[which].parameter->key;
+        EXPECT_NEAR((beside.chi2 - f.chi2) / rise, 1.0, 0.1)
+            << sigma << " " << f.settings[which].parameter->key;
       }
     }
   }
@@ -245,9 +250,9 @@ TEST(LeastSquares, AtTheEndsOfAProfileAFitOfTheOthersHasRisenByWhatWasAsked) {
 TEST(LeastSquares, ANumberThatNothingDependsOnHasNoStandardError) {
   const Hidden h = hidden_wire(0.05, 4);
   const Model model(h.series, few_edges());
-  const Fit f =
-      fit(model, h.data,
-          {{&parameters().at("wire.axial_stiffness_N"), -0.2}, {&parameters().at("mount.support_radius_mm"), 0.0}});
+  const Fit f = fit(model, h.data,
+                    {{&parameters().at("wire.axial_stiffness_N"), -0.2},
+                     {&parameters().at("mount.support_radius_mm"), 0.0}});
   ASSERT_TRUE(f.report.usable()) << f.report.message;
   EXPECT_TRUE(f.covariance.allFinite());
   EXPECT_EQ(f.jacobian.col(1).norm(), 0.0);

@@ -46,9 +46,9 @@ TEST(PublishedFit, TheProbabilityOfAPrintedR2IsItsFrequency) {
     law.r_squared = 0.997;
     const PublishedSeries one = published_series({published(law, readings)}).front();
     const LinearCurve curve = linear_curve(one, f, Eigen::MatrixXd(readings, 0));
-    expected += std::exp(
-        length_probability(one.numbers.lower, one.numbers.upper, readings - 3.0, curve.v.squaredNorm(), std::log(sigma))
-            .log);
+    expected += std::exp(length_probability(one.numbers.lower, one.numbers.upper, readings - 3.0,
+                                            curve.v.squaredNorm(), std::log(sigma))
+                             .log);
   }
   EXPECT_GT(expected, 0.05 * sets) << "an R2 that is seen often";
   EXPECT_NEAR(seen, expected, 4.0 * std::sqrt(expected));  // four deviations of a count
@@ -64,7 +64,8 @@ TEST(PublishedFit, LinearCurvesKeepLengths) {
   const Eigen::VectorXd moved = wire.force[2] + wire.by[2] * step;
   const Eigen::Vector3d along = one.basis * moved;
   EXPECT_LT((curve.f + curve.A * step - along).norm(), 1e-12 * moved.norm());
-  EXPECT_NEAR((curve.v + curve.V * step).norm(), (moved - one.basis.transpose() * along).norm(), 1e-12 * moved.norm());
+  EXPECT_NEAR((curve.v + curve.V * step).norm(), (moved - one.basis.transpose() * along).norm(),
+              1e-12 * moved.norm());
 }
 
 // Least squares on rows with a known standard deviation is maximum likelihood: squares of rows against the likelihood itself.
@@ -78,14 +79,17 @@ TEST(PublishedFit, RowsHaveTheLikelihoodAsTheirSquares) {
   rows.set_sigma(sigma);
   const auto deviance_at = [&](const Eigen::VectorXd& force) {
     const Eigen::VectorXd off = force - one.basis.transpose() * (one.basis * force);
-    return -2.0 *
-           length_probability(one.numbers.lower, one.numbers.upper, readings - 3.0, off.squaredNorm(), std::log(sigma))
-               .log;
+    return -2.0 * length_probability(one.numbers.lower, one.numbers.upper, readings - 3.0, off.squaredNorm(),
+                                     std::log(sigma))
+                      .log;
   };
-  const auto square_at = [&](const Eigen::VectorXd& force) { return std::pow(rows.r_squared_residual(force), 2); };
+  const auto square_at = [&](const Eigen::VectorXd& force) {
+    return std::pow(rows.r_squared_residual(force), 2);
+  };
   for (const double step : {-0.5, -0.05, 0.05, 0.5}) {
     const Eigen::VectorXd force = wire.force[0] + step * wire.by[0].col(1);
-    EXPECT_NEAR(square_at(force) - square_at(wire.force[0]), deviance_at(force) - deviance_at(wire.force[0]), 1e-6);
+    EXPECT_NEAR(square_at(force) - square_at(wire.force[0]), deviance_at(force) - deviance_at(wire.force[0]),
+                1e-6);
     const double h = 1e-5;  // of the number
     const double by = (rows.r_squared_residual(force + h * wire.by[0].col(1)) -
                        rows.r_squared_residual(force - h * wire.by[0].col(1))) /
@@ -158,7 +162,8 @@ TEST(SlowPublishedFit, PIsUniform) {
       p.push_back(published_bootstrap(deviance, deviance.minimise(deviance.start()), 199).p);
     }
     EXPECT_GT(uniform_p(p), 0.01) << readings;
-    EXPECT_LT(test::share_below(p, 0.05), 0.05 + 4.0 * 0.022) << readings;  // four deviations of a share of 100
+    EXPECT_LT(test::share_below(p, 0.05), 0.05 + 4.0 * 0.022)
+        << readings;  // four deviations of a share of 100
   }
 }
 

@@ -72,7 +72,9 @@ const std::vector<std::string> tokens{"nan",
 /// One to eight small changes at random places.
 std::string mutated(const std::string& seed, const std::string& other, std::mt19937_64& random) {
   std::string text = seed;
-  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  const auto below = [&](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+  };
   const std::size_t changes = 1 + below(8);
   for (std::size_t i = 0; i < changes; ++i) {
     const std::size_t at = below(text.size() + 1);
@@ -104,11 +106,13 @@ std::string mutated(const std::string& seed, const std::string& other, std::mt19
 }
 
 /// Runs `read` on `count` mutations; what it throws fails the test with the text that did it.
-void expect_input_errors_only(const std::vector<std::string>& seeds, const std::function<void(std::string_view)>& read,
-                              int count) {
+void expect_input_errors_only(const std::vector<std::string>& seeds,
+                              const std::function<void(std::string_view)>& read, int count) {
   std::mt19937_64 random(20240229);
   for (int i = 0; i < count; ++i) {
-    const auto pick = [&] { return seeds[std::uniform_int_distribution<std::size_t>(0, seeds.size() - 1)(random)]; };
+    const auto pick = [&] {
+      return seeds[std::uniform_int_distribution<std::size_t>(0, seeds.size() - 1)(random)];
+    };
     const std::string text = mutated(pick(), pick(), random);
     ASSERT_NO_THROW(read(text)) << "mutation " << i << ":\n" << text;
   }
@@ -122,7 +126,8 @@ const std::vector<std::string> csv_seeds{"displacement_mm,force_N\n0,0\n0.1,0.5\
 const std::vector<std::string> experiment_seeds{
     valid_experiment, "--set wire.length_mm=181\n" + valid_experiment,
     "--set series[s40].mount.span_mm=174\n" + valid_experiment,
-    edited("travel_mm = 2.0", "path_mm = [0, 2.0, 0.0]\nmount.kind = 'supports'\nmount.support_radius_mm = 2"),
+    edited("travel_mm = 2.0",
+           "path_mm = [0, 2.0, 0.0]\nmount.kind = 'supports'\nmount.support_radius_mm = 2"),
     edited("travel_mm = 2.0\npoints = 21", "file = 's40.csv'\nforce_sigma_N = 0.05")};
 
 TEST(FuzzReaders, ValidSeedsAndAThousandMutations) {

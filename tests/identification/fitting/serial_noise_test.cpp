@@ -22,7 +22,8 @@ struct LinearRecords {
   Data data;
   Fit fit;
 
-  LinearRecords(int readings, double decay, double sigma, std::mt19937& random) : model(series(readings), {}) {
+  LinearRecords(int readings, double decay, double sigma, std::mt19937& random)
+      : model(series(readings), {}) {
     std::normal_distribution<double> normal;
     fit.settings = {{&parameters().at("wire.axial_stiffness_N"), 0.0}};
     fit.free = 1;

@@ -226,10 +226,12 @@ TEST(Noise, TheFilterWhitensItsCovariance) {
   for (int i = 1; i < n; ++i) path[i] = path[i - 1] + std::abs(d[i] - d[i - 1]);
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
-      covariance(i, j) = height[i] * height[j] * std::exp(-std::abs(path[i] - path[j]) / 0.03) + (i == j ? 0.04 : 0.0);
+      covariance(i, j) =
+          height[i] * height[j] * std::exp(-std::abs(path[i] - path[j]) / 0.03) + (i == j ? 0.04 : 0.0);
     }
   }
-  EXPECT_LT((inverse * covariance * inverse.transpose() - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-12);  // roundings
+  EXPECT_LT((inverse * covariance * inverse.transpose() - Eigen::MatrixXd::Identity(n, n)).norm(),
+            1e-12);  // roundings
 }
 
 TEST(Noise, DeclaredCountsFirst) {

@@ -47,7 +47,8 @@ TEST(ImportanceSampling, FindsANarrowPeak) {
 
 // Heights of the paper's geometric limit: 17.89, 20.40, 21.06 mm.
 TEST(FitRanges, EndWhereTheWireIsTaut) {
-  const Experiment e = read_experiment(SNARE_SOURCE_DIR "/data/experiments/published_static.toml", parameters());
+  const Experiment e =
+      read_experiment(SNARE_SOURCE_DIR "/data/experiments/published_static.toml", parameters());
   const FitRanges ranges = fit_ranges(e, {});
   double all[2] = {0.0, 0.0};
   for (std::size_t r = 0; r < ranges.ranges().size(); ++r)
@@ -79,12 +80,14 @@ TEST(CurveLikelihood, IntegratesTheZeroOut) {
       for (int j = 0; j < 13; ++j)
         force[j] = curve.force.value(std::max(0.0, cell.travel[static_cast<std::size_t>(j)] - z));
       const Eigen::Vector3d b = cell.basis * force;
-      terms.push_back(-0.5 * (cell.numbers.coefficients - b).squaredNorm() / (sigma * sigma) - 3.0 * log_sigma[0] +
+      terms.push_back(-0.5 * (cell.numbers.coefficients - b).squaredNorm() / (sigma * sigma) -
+                      3.0 * log_sigma[0] +
                       length_probability(cell.numbers.lower, cell.numbers.upper, 10.0,
                                          force.squaredNorm() - b.squaredNorm(), log_sigma[0])
                           .log);
     }
-    const double expected = log_sum(terms) - std::log(count) + cell.log_scale - 1.5 * std::log(2.0 * std::numbers::pi);
+    const double expected =
+        log_sum(terms) - std::log(count) + cell.log_scale - 1.5 * std::log(2.0 * std::numbers::pi);
     EXPECT_NEAR(log_likelihoods(cell, curve, best_zero(cell, curve), log_sigma)[0], expected, 0.02) << shift;
   }
 }
@@ -95,7 +98,8 @@ TEST(CurveLikelihood, FindsTheZeroBesideAnEstimate) {
   for (const int readings : {6, 13, 68}) {
     const FitCell cell = fit_cell({4.0e5, 1500.0, -0.2, 0.9985, 6e-3, 4}, 6e-3, readings);
     const double zero = best_zero(cell, curve);
-    for (const double off : {-4e-4, 1e-4, 3e-4}) EXPECT_NEAR(best_zero(cell, curve, zero + off), zero, 2e-7) << off;
+    for (const double off : {-4e-4, 1e-4, 3e-4})
+      EXPECT_NEAR(best_zero(cell, curve, zero + off), zero, 2e-7) << off;
     const Eigen::ArrayXd log_sigma = cell.log_scatter + Eigen::ArrayXd::LinSpaced(5, -1.0, 1.0);
     const Eigen::ArrayXd most = most_likelihoods(cell, curve, zero, log_sigma);
     EXPECT_TRUE((log_likelihoods(cell, curve, zero, log_sigma) <= most).all());
@@ -163,7 +167,8 @@ TEST(PublishedMap, NamesTheEffectThatMadeTheNumbers) {
   options.first = 12, options.batch = 8, options.batches = 3;
   std::vector<Hypothesis> some;
   for (const Hypothesis& h : published_hypotheses())
-    if (h.name == "declared" || h.name == "mount_axial_compliance" || h.name == "wire_length") some.push_back(h);
+    if (h.name == "declared" || h.name == "mount_axial_compliance" || h.name == "wire_length")
+      some.push_back(h);
   const std::vector<HypothesisMap> maps = published_map(e, fit_ranges(e, options), some, options);
   ASSERT_EQ(maps.size(), 3u);
   for (const HypothesisMap& m : maps) {

@@ -23,7 +23,8 @@ TEST(AmplitudeSpectrum, FindsTheAmplitudesOfOscillations) {
   for (Eigen::Index k = 0; k < s.frequencies.size(); ++k) {
     EXPECT_NEAR(s.frequencies[k], 0.1 * static_cast<double>(k + 1), 1e-12);
     const double wanted = k == 11 ? 0.3 : k == 69 ? 0.1 : 0.0;
-    EXPECT_NEAR(s.amplitudes[k], wanted, 2e-3) << s.frequencies[k];  // the last reading counts twice: 1/n of both
+    EXPECT_NEAR(s.amplitudes[k], wanted, 2e-3)
+        << s.frequencies[k];  // the last reading counts twice: 1/n of both
   }
 }
 
@@ -43,7 +44,8 @@ TEST(AmplitudeSpectrum, TakesTimesThatAreNotEvenlySpaced) {
 }
 
 TEST(AmplitudeSpectrum, OfLittleIsNothing) {
-  EXPECT_EQ(amplitude_spectrum(Eigen::VectorXd::LinSpaced(7, 0.0, 1.0), Eigen::VectorXd::Ones(7)).frequencies.size(),
+  EXPECT_EQ(amplitude_spectrum(Eigen::VectorXd::LinSpaced(7, 0.0, 1.0), Eigen::VectorXd::Ones(7))
+                .frequencies.size(),
             0);
   EXPECT_EQ(amplitude_spectrum(Eigen::VectorXd::Zero(9), Eigen::VectorXd::Ones(9)).frequencies.size(), 0);
 }

@@ -38,7 +38,8 @@ TEST(BoundedLeastSquares, FindsTheEndOfAValleyAndOfABound) {
 
 // Two columns of a cosine of 0.99999 with each other, from the bound x >= 0 of one: exact after two steps, not after a thousand.
 TEST(BoundedLeastSquares, NumbersThatHangTogetherDoNotCreep) {
-  const Eigen::Matrix<double, 3, 2> A = (Eigen::Matrix<double, 3, 2>() << 1.0, 1.0, 0.0, 0.004, 1.0, 1.0).finished();
+  const Eigen::Matrix<double, 3, 2> A =
+      (Eigen::Matrix<double, 3, 2>() << 1.0, 1.0, 0.0, 0.004, 1.0, 1.0).finished();
   const Eigen::Vector3d b = A * Eigen::Vector2d(3.0, -2.0);
   BoundedProblem p;
   p.lower = Eigen::Vector2d(0.0, -infinity);
@@ -58,7 +59,9 @@ TEST(BoundedLeastSquares, EndsWhereNoDampingHelps) {
   p.residual = [](const Eigen::VectorXd& x) -> Eigen::VectorXd {
     return Eigen::VectorXd::Constant(1, 1.0 + std::abs(x[0]));
   };
-  p.residual_jacobian = [](const Eigen::VectorXd&) -> Eigen::MatrixXd { return -Eigen::MatrixXd::Ones(1, 1); };
+  p.residual_jacobian = [](const Eigen::VectorXd&) -> Eigen::MatrixXd {
+    return -Eigen::MatrixXd::Ones(1, 1);
+  };
   const BoundedResult r = bounded_least_squares(p, Eigen::VectorXd::Zero(1), 50, 1e-30);
   EXPECT_EQ(r.end, BoundedEnd::converged);
   EXPECT_EQ(r.x[0], 0.0);

@@ -28,8 +28,8 @@ constexpr double degree = std::numbers::pi / 180.0;
 class FreeBodyRecords : public test::FolderFixture {
  protected:
   /// Readings of a function of time every `interval`, with noise.
-  void readings(const std::string& file, const std::string& column, double duration, double interval, double sigma,
-                unsigned seed, const std::function<double(double)>& value) const {
+  void readings(const std::string& file, const std::string& column, double duration, double interval,
+                double sigma, unsigned seed, const std::function<double(double)>& value) const {
     std::mt19937 engine(seed);
     std::normal_distribution<double> noise(0.0, sigma);
     std::string text = "time_s," + column + "\n";
@@ -40,16 +40,20 @@ class FreeBodyRecords : public test::FolderFixture {
   /// scenario.toml: a body "craft" in free motion with one sensor; `body`: its numbers, and the tables after it.
   void scenario(double duration, double interval, const std::string& body, const std::string& sensor,
                 const std::string& kind) const {
-    write("scenario.toml",
-          fmt::format("schema = \"snare-scenario/2\"\ntitle = \"craft\"\nduration_s = {:.1f}\noutput_interval_s = {}\n"
-                      "[[bodies]]\nname = \"craft\"\n{}"
-                      "[[sensors]]\nname = \"{}\"\nkind = \"{}\"\nframe = \"craft\"\n[solver]\nmax_order = 5\n",
-                      duration, interval, body, sensor, kind));
+    write(
+        "scenario.toml",
+        fmt::format(
+            "schema = \"snare-scenario/2\"\ntitle = \"craft\"\nduration_s = {:.1f}\noutput_interval_s = {}\n"
+            "[[bodies]]\nname = \"craft\"\n{}"
+            "[[sensors]]\nname = \"{}\"\nkind = \"{}\"\nframe = \"craft\"\n[solver]\nmax_order = 5\n",
+            duration, interval, body, sensor, kind));
   }
   /// A craft of 10 kg m^2 with a moment of 0.05 N m about z: w = w0 + M t/J. Declared 8 % heavier to turn.
-  std::filesystem::path craft(double first_spin, double second_spin, const std::string& second_declared) const {
+  std::filesystem::path craft(double first_spin, double second_spin,
+                              const std::string& second_declared) const {
     scenario(10.0, 0.05, test::turning_craft("10.8, 10.8, 10.8"), "gyro", "rate");
-    for (const auto& [name, spin, seed] : {std::tuple{"first", first_spin, 1u}, std::tuple{"second", second_spin, 2u}})
+    for (const auto& [name, spin, seed] :
+         {std::tuple{"first", first_spin, 1u}, std::tuple{"second", second_spin, 2u}})
       readings(fmt::format("{}.csv", name), "rate_deg_s", 10.0, 0.1, 0.01, seed,
                [spin = spin](double t) { return (spin + 0.05 * t / 10.0) / degree; });
     return write("record.toml", R"(schema = "snare-record/1"
@@ -177,14 +181,17 @@ TEST_F(FreeBodyRecords, ARecordShorterThanTheSlowestPeriodIsSaidAndNothingIsName
   EXPECT_EQ(longer.kind, VerdictKind::nothing_missing);
   const RecordTrace shorter = trace_records(read_records(spring(0.4, stiffness)));
   ASSERT_TRUE(shorter.report.usable()) << shorter.report.message;
-  EXPECT_THAT(shorter.warnings, Contains(HasSubstr("less than the slowest period of the declared scenario, 1.019 s")));
+  EXPECT_THAT(shorter.warnings,
+              Contains(HasSubstr("less than the slowest period of the declared scenario, 1.019 s")));
   EXPECT_EQ(shorter.kind, VerdictKind::nothing_missing);
 }
 
 // Nothing turns: the stiffness against turning changes nothing.
 TEST_F(FreeBodyRecords, ANumberThatChangesNothingIsSaid) {
-  const RecordTrace trace = trace_records(read_records(spring(
-      1.5, "\"bushings[fixture].translational_stiffness_N_m\", \"bushings[fixture].rotational_stiffness_Nm_rad\"")));
+  const RecordTrace trace =
+      trace_records(read_records(spring(1.5,
+                                        "\"bushings[fixture].translational_stiffness_N_m\", "
+                                        "\"bushings[fixture].rotational_stiffness_Nm_rad\"")));
   ASSERT_TRUE(trace.report.usable()) << trace.report.message;
   EXPECT_THAT(trace.warnings, Contains(HasSubstr("rotational_stiffness_Nm_rad is not identifiable")));
   EXPECT_NEAR(trace.base.numbers[0].value, 200.0, 4.0 * trace.base.numbers[0].stderr_);  // four deviations

@@ -18,7 +18,8 @@ constexpr double step_s = 0.5;       // of the motor's course
 constexpr double noise_deg = 2e-5;   // a thousandth of the narrowest piece's width
 
 /// The joint of Abiko et al., Table 2: N m/deg and N m s/deg from deflections of 0, 0.04 and 0.06 deg on, torque continuous.
-constexpr std::array<double, 3> from{0.0, 0.04, 0.06}, stiffness{12.5, 475.0, 475.0}, damping{48.9, 87.3, 17.6};
+constexpr std::array<double, 3> from{0.0, 0.04, 0.06}, stiffness{12.5, 475.0, 475.0},
+    damping{48.9, 87.3, 17.6};
 
 /// Torque of the spring with its damper [N m] at a deflection [deg] and its rate [deg/s].
 double torque(double x, double rate) {
@@ -60,7 +61,8 @@ void write_step(const std::filesystem::path& file, double by_deg, unsigned seed)
 class SlowJointStep : public test::FolderFixture {
  protected:
   std::filesystem::path write_all() const {
-    write("link.urdf", R"(<robot name="link"><link name="base"/><link name="beam"><inertial><mass value="500"/>
+    write("link.urdf",
+          R"(<robot name="link"><link name="base"/><link name="beam"><inertial><mass value="500"/>
 <inertia ixx="12500" ixy="0" ixz="0" iyy="12500" iyz="0" izz="12500"/></inertial></link>
 <joint name="hinge" type="continuous"><parent link="base"/><child link="beam"/><axis xyz="0 0 1"/></joint></robot>)");
     // Declared a tenth off.
@@ -109,7 +111,8 @@ body_spin_tolerance_rad_s = 1e-9
       const std::string name = fmt::format("step{}", seed);
       write_step(path(name + ".csv"), by, seed++);
       record += fmt::format(
-          "[[records]]\nname = \"{0}\"\nfile = \"{0}.csv\"\nsigma = {1}\ncolumns = {{ angle_deg = \"angle\" }}\n"
+          "[[records]]\nname = \"{0}\"\nfile = \"{0}.csv\"\nsigma = {1}\ncolumns = {{ angle_deg = \"angle\" "
+          "}}\n"
           "set = {{ \"drives[1].by_deg\" = {2} }}\n",
           name, noise_deg, by);
     }

@@ -35,9 +35,10 @@ TEST(MotionCatalogue, AsksTheWiresOfASnareTheVisitorAndTheClock) {
   const RecordSet set = read_records(records / "flight.toml");
   const RecordModel model(set);
   const std::vector<std::string> offered = labels(motion_effects(model));
-  for (const char* label : {"wire_length (snare)", "wire_bending_stiffness (snare)", "wire_axial_stiffness (snare.rod)",
-                            "wire_damping (axial)", "wire_damping (bending)", "body_centre_of_mass (htv)",
-                            "body_start_position (htv)", "record_clock"})
+  for (const char* label :
+       {"wire_length (snare)", "wire_bending_stiffness (snare)", "wire_axial_stiffness (snare.rod)",
+        "wire_damping (axial)", "wire_damping (bending)", "body_centre_of_mass (htv)",
+        "body_start_position (htv)", "record_clock"})
     EXPECT_THAT(offered, Contains(label));
   EXPECT_THAT(offered, Not(Contains("body_start_attitude (htv)")));  // none is declared
 }

@@ -117,11 +117,13 @@ TEST_F(OpenNumbers, MassStiffnessAndDampingScaleTogether) {
 
 TEST_F(OpenNumbers, WithOneOfThemHeldTheOthersAreKnown) {
   const RecordTrace t = fitted(spring(
-      R"("bushings[fixture].translational_stiffness_N_m", "bushings[fixture].translational_damping_Ns_m")", 5.0));
+      R"("bushings[fixture].translational_stiffness_N_m", "bushings[fixture].translational_damping_Ns_m")",
+      5.0));
   ASSERT_TRUE(t.report.usable()) << t.report.message;
   for (const TracedNumber& n : t.final.numbers) EXPECT_TRUE(n.identified && n.lower && n.upper) << n.key;
   EXPECT_TRUE(t.final.open.empty() && t.findings.empty());
-  EXPECT_NEAR(t.final.numbers[0].value, 200.0, 4.0 * t.final.numbers[0].stderr_) << t.final.numbers[0].stderr_;
+  EXPECT_NEAR(t.final.numbers[0].value, 200.0, 4.0 * t.final.numbers[0].stderr_)
+      << t.final.numbers[0].stderr_;
 }
 
 TEST_F(OpenNumbers, TheSignAndTheUnitOfASensorAreNamed) {
@@ -134,14 +136,16 @@ TEST_F(OpenNumbers, TheSignAndTheUnitOfASensorAreNamed) {
     const RecordTrace slip = fitted(spring(key, 5.0, [factor](double x) { return factor * x; }));
     ASSERT_FALSE(slip.findings.empty()) << factor;
     EXPECT_EQ(slip.findings.front().kind, FindingKind::unit_slip) << factor;
-    EXPECT_NEAR(slip.findings.front().value, factor, 0.01 * factor);  // noise of 0.01 mm in 3 mm, over 100 readings
+    EXPECT_NEAR(slip.findings.front().value, factor,
+                0.01 * factor);  // noise of 0.01 mm in 3 mm, over 100 readings
   }
 }
 
 TEST_F(OpenNumbers, ANumberOnItsBoundHasNoIntervalBeyondIt) {
   const std::filesystem::path file = spring(R"("bushings[fixture].translational_stiffness_N_m")", 5.0);
-  write("record.toml", contents("record.toml") +
-                           "[[fit.numbers]]\nkey = \"bushings[fixture].translational_stiffness_N_m\"\nupper = 190.0\n");
+  write("record.toml",
+        contents("record.toml") +
+            "[[fit.numbers]]\nkey = \"bushings[fixture].translational_stiffness_N_m\"\nupper = 190.0\n");
   std::string scenario = contents("scenario.toml");
   scenario.replace(scenario.find("200.0"), 5, "180.0");
   write("scenario.toml", scenario);

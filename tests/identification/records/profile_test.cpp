@@ -83,8 +83,9 @@ sigma = {}
 TEST_F(ProfileOfATurningBody, IsTheCovarianceWhereNumbersEnterLinearly) {
   const char* key = "loads[thruster].moment_Nm[3]";
   const RecordTrace t = trace_records(
-      read_records(
-          record(0.02, fmt::format("free = [\"{0}\", \"bodies[craft].spin_rad_s[3]\"]\nprofile = [\"{0}\"]\n", key))),
+      read_records(record(
+          0.02,
+          fmt::format("free = [\"{0}\", \"bodies[craft].spin_rad_s[3]\"]\nprofile = [\"{0}\"]\n", key))),
       {.effects = false});
   ASSERT_TRUE(t.report.usable()) << t.report.message;
   ASSERT_EQ(t.profiles.size(), 1u);
@@ -108,7 +109,8 @@ TEST_F(ProfileOfATurningBody, IsThatOfTheInverseWhereTheCovarianceMisleads) {
   constexpr double sigma = 3.3;  // deg/s: 1/J to a fifth
   const RecordTrace t = trace_records(
       read_records(record(
-          sigma, "free = [\"bodies[craft].inertia_kg_m2[3]\"]\nprofile = [\"bodies[craft].inertia_kg_m2[3]\"]\n")),
+          sigma,
+          "free = [\"bodies[craft].inertia_kg_m2[3]\"]\nprofile = [\"bodies[craft].inertia_kg_m2[3]\"]\n")),
       {.effects = false});
   ASSERT_TRUE(t.report.usable()) << t.report.message;
   ASSERT_EQ(t.profiles.size(), 1u);
@@ -133,8 +135,9 @@ TEST_F(ProfileOfATurningBody, EndsAtABound) {
   const RecordTrace t = trace_records(
       read_records(
           record(0.5,
-                 fmt::format("free = [\"{0}\"]\nprofile = [\"{0}\"]\n[[fit.numbers]]\nkey = \"{0}\"\nlower = 0.05\n",
-                             key)),
+                 fmt::format(
+                     "free = [\"{0}\"]\nprofile = [\"{0}\"]\n[[fit.numbers]]\nkey = \"{0}\"\nlower = 0.05\n",
+                     key)),
           {{"scenario.bodies[craft].spin_rad_s", "[0.0, 0.0, 0.012]"}}),
       {.effects = false});
   ASSERT_TRUE(t.report.usable()) << t.report.message;
@@ -149,8 +152,8 @@ TEST_F(ProfileOfATurningBody, EndsAtABound) {
 
 TEST_F(ProfileOfATurningBody, AsksForAFittedNumber) {
   try {
-    static_cast<void>(read_records(
-        record(0.02, "free = [\"bodies[craft].mass_kg\"]\nprofile = [\"bodies[craft].inertia_kg_m2[3]\"]\n")));
+    static_cast<void>(read_records(record(
+        0.02, "free = [\"bodies[craft].mass_kg\"]\nprofile = [\"bodies[craft].inertia_kg_m2[3]\"]\n")));
     FAIL() << "taken";
   } catch (const std::exception& error) {
     EXPECT_THAT(error.what(), HasSubstr("must be one of fit.free or fit.free_each"));

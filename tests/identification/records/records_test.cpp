@@ -39,7 +39,8 @@ void write_swing(const std::filesystem::path& file, const Swing& s, unsigned see
   std::ofstream out(file);
   out << "time_s,angle_deg\n";
   for (int i = 0; i <= 40000; ++i) {
-    if (i % 100 == 0) out << fmt::format("{:.4f},{:.6f}\n", i * step, q * 180.0 / std::numbers::pi + noise(engine));
+    if (i % 100 == 0)
+      out << fmt::format("{:.4f},{:.6f}\n", i * step, q * 180.0 / std::numbers::pi + noise(engine));
     const double k1 = v, a1 = acceleration(q, v);
     const double k2 = v + 0.5 * step * a1, a2 = acceleration(q + 0.5 * step * k1, k2);
     const double k3 = v + 0.5 * step * a2, a3 = acceleration(q + 0.5 * step * k2, k3);
@@ -103,7 +104,8 @@ TEST_F(Records, FitFindsTheNumbersOfAnotherIntegrator) {
   for (std::size_t k = 0; k < 2; ++k)
     EXPECT_NEAR(trace.base.numbers[k].value, truth[k], 5.0 * trace.base.numbers[k].stderr_ + 2e-3 * truth[k])
         << trace.base.numbers[k].key;
-  EXPECT_NEAR(trace.base.chi2_dof, 1.0, 0.4);  // 401 readings: 0.07 is one deviation; the rest is the integrators'
+  EXPECT_NEAR(trace.base.chi2_dof, 1.0,
+              0.4);  // 401 readings: 0.07 is one deviation; the rest is the integrators'
 }
 
 TEST_F(Records, SimplexFindsWhatGaussNewtonFindsWithMoreSimulations) {
@@ -131,10 +133,10 @@ TEST_F(Records, CoulombFrictionIsNamed) {
 // Friction that is larger at rest, where the speed is declared at which it has fallen off; else a late sensor is as good.
 TEST_F(Records, FrictionThatFallsWithTheSpeedIsNamed) {
   write_swing(folder_ / "a.csv", {.coulomb = 4e-4, .breakaway_excess = 2e-3, .falls_off = 2.0}, 4);
-  const RecordTrace trace =
-      trace_records(read_records(write("sigma = 0.02\nset = { \"arms[pendulum].joint.bearing.coulomb_Nm\" = 4e-4, "
-                                       "\"arms[pendulum].joint.bearing.stribeck_velocity_rad_s\" = 2.0 }\n",
-                                       "most_effects = 1\n")));
+  const RecordTrace trace = trace_records(
+      read_records(write("sigma = 0.02\nset = { \"arms[pendulum].joint.bearing.coulomb_Nm\" = 4e-4, "
+                         "\"arms[pendulum].joint.bearing.stribeck_velocity_rad_s\" = 2.0 }\n",
+                         "most_effects = 1\n")));
   ASSERT_TRUE(trace.report.usable()) << trace.report.message;
   ASSERT_EQ(trace.selected.size(), 1u);
   EXPECT_EQ(trace.selected[0], "joint_breakaway (pendulum::bearing)");
@@ -146,8 +148,8 @@ TEST_F(Records, SimplexEndsWhereItHardlyMoves) {
   write_swing(folder_ / "a.csv", {.inertia = 1.2e-4, .viscous = 2.0e-4}, 5);
   const std::string method = "method = \"nelder_mead\"\n";
   const RecordTrace far = trace_records(read_records(write("sigma = 0.02\n", method)), {.effects = false});
-  const RecordTrace near =
-      trace_records(read_records(write("sigma = 0.02\n", method + "simplex_change = 1e-2\n")), {.effects = false});
+  const RecordTrace near = trace_records(
+      read_records(write("sigma = 0.02\n", method + "simplex_change = 1e-2\n")), {.effects = false});
   ASSERT_TRUE(far.report.usable() && near.report.usable());
   EXPECT_LT(near.fit_simulations, far.fit_simulations);
   for (std::size_t k = 0; k < 2; ++k)
@@ -167,10 +169,10 @@ TEST_F(Records, LostStepIsFoundFromTheBeginnings) {
 TEST_F(Records, FamiliesTellWhatOtherModelsFind) {
   write_swing(folder_ / "a.csv", {}, 7);
   const RecordTrace trace = trace_records(
-      read_records(
-          write("sigma = 0.02\n",
-                "[[fit.families]]\nname = \"heavier\"\nset = { \"arms[pendulum].link.rod.mass_kg\" = 0.16258 }\n"
-                "[[fit.families]]\nname = \"same\"\nset = { \"arms[pendulum].link.rod.mass_kg\" = 0.1478 }\n")),
+      read_records(write(
+          "sigma = 0.02\n",
+          "[[fit.families]]\nname = \"heavier\"\nset = { \"arms[pendulum].link.rod.mass_kg\" = 0.16258 }\n"
+          "[[fit.families]]\nname = \"same\"\nset = { \"arms[pendulum].link.rod.mass_kg\" = 0.1478 }\n")),
       {.effects = false});
   ASSERT_TRUE(trace.report.usable()) << trace.report.message;
   ASSERT_EQ(trace.families.size(), 2u);
@@ -206,7 +208,8 @@ TEST_F(Records, BadRecordsAreRefusedWithEverything) {
     std::string text;
     for (int i = 0; i < 400; ++i) {
       const double s = 0.01 * (i - 250);
-      text += fmt::format("{:.2f},{:.2f}\n", 0.01 * i, 0.05 * std::floor(std::min(range, 40.0 - 6.0 * s * s) / 0.05));
+      text += fmt::format("{:.2f},{:.2f}\n", 0.01 * i,
+                          0.05 * std::floor(std::min(range, 40.0 - 6.0 * s * s) / 0.05));
     }
     return text;
   };

@@ -29,7 +29,8 @@ struct TrueMode {
 };
 
 /// x = sum A exp(-s t) cos(2 pi f t + phase) and normal noise.
-RingDown modal_sum(const std::vector<TrueMode>& modes, double duration, int readings, double noise, unsigned seed) {
+RingDown modal_sum(const std::vector<TrueMode>& modes, double duration, int readings, double noise,
+                   unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0.0, 1.0);
   RingDown data;
@@ -149,7 +150,8 @@ TEST(RingDown, DecaysAtOneFrequencyThatContradictEachOther) {
 // Two polarisations of one wire in one record, 0.8 Hz apart: their errors are correlated, and they contradict each other.
 TEST(RingDown, ModesOfOneRecordThatContradictEachOther) {
   RingDownFile file;
-  file.series.push_back({modal_sum({{110.0, 3.0, 1e-3, 0.0}, {110.8, 0.8, 8e-4, 0.0}}, 3.0, 1500, 1e-5, 8), {}});
+  file.series.push_back(
+      {modal_sum({{110.0, 3.0, 1e-3, 0.0}, {110.8, 0.8, 8e-4, 0.0}}, 3.0, 1500, 1e-5, 8), {}});
   const RingDownFit fit = fit_ring_down(file.series[0].data);
   ASSERT_EQ(fit.modes.size(), 2u);
   expect_near(fit.modes[0].decay, 3.0);
@@ -196,8 +198,8 @@ TEST(RingDown, NegativeDampingIsAContradiction) {
 
 TEST(RingDown, SaysWhenTheLawDoesNotFit) {
   // A decay that rises with w, not with w^2.
-  const DampingSplit split = split_damping(
-      std::vector<DecayOfMode>{{100.0, 1.0, {1.0, 0.02}}, {300.0, 1.0, {3.0, 0.02}}, {900.0, 1.0, {9.0, 0.02}}});
+  const DampingSplit split = split_damping(std::vector<DecayOfMode>{
+      {100.0, 1.0, {1.0, 0.02}}, {300.0, 1.0, {3.0, 0.02}}, {900.0, 1.0, {9.0, 0.02}}});
   EXPECT_TRUE(split.separated);
   EXPECT_LT(split.misfit_p, 1e-3);
   EXPECT_THAT(split.statement, HasSubstr("do not lie on one line"));
@@ -223,8 +225,8 @@ wire::WireSpecification steel_wire(double length) {
 }
 
 /// Displacement of a vertex along y of the full wire, damped, from its rest with the given velocities.
-RingDown full_wire(const wire::RodInMotion& rod, const Eigen::Matrix3Xd& velocities, int vertex, double duration,
-                   double tolerance) {
+RingDown full_wire(const wire::RodInMotion& rod, const Eigen::Matrix3Xd& velocities, int vertex,
+                   double duration, double tolerance) {
   coupling::Motion motion;
   motion.wires.push_back({"wire", rod, coupling::resting_wire(rod), velocities});
   coupling::MotionOptions options;
@@ -236,11 +238,12 @@ RingDown full_wire(const wire::RodInMotion& rod, const Eigen::Matrix3Xd& velocit
   options.max_order = 5;
   std::vector<double> t;
   std::vector<double> x;
-  const coupling::MotionResult result = coupling::simulate(motion, options, [&](const coupling::MotionSample& s) {
-    t.push_back(s.time);
-    x.push_back(s.wires[0](1, vertex));
-    return false;
-  });
+  const coupling::MotionResult result =
+      coupling::simulate(motion, options, [&](const coupling::MotionSample& s) {
+        t.push_back(s.time);
+        x.push_back(s.wires[0](1, vertex));
+        return false;
+      });
   EXPECT_TRUE(result.report.usable()) << result.report.message;
   RingDown data;
   data.time = Eigen::Map<Eigen::VectorXd>(t.data(), static_cast<Eigen::Index>(t.size()));
@@ -331,7 +334,8 @@ class RingDownFileTest : public test::FolderFixture {
 TEST_F(RingDownFileTest, IsReadAndChecked) {
   const std::string head = "schema = \"snare-ringdown/1\"\ntitle = \"t\"\n";
   const std::string series = head + "[[series]]\nname = \"a\"\n";
-  EXPECT_EQ(message_of(series + "file = \"good.csv\"\nmodes = 1\nbending_share = [0.9]\nfrom_s = 3.0\nto_s = 3.9\n"),
+  EXPECT_EQ(message_of(series +
+                       "file = \"good.csv\"\nmodes = 1\nbending_share = [0.9]\nfrom_s = 3.0\nto_s = 3.9\n"),
             "accepted");
   const std::pair<std::string, const char*> wrong[] = {
       {"title = \"t\"\n", "schema, missing"},
@@ -353,7 +357,8 @@ TEST_F(RingDownFileTest, IsReadAndChecked) {
       {series + "file = \"good.csv\"\n[wire]\nlength_mm = 1.0\n", "wire.diameter_mm, missing"},
       {series + "file = \"good.csv\"\n[mount]\nkind = \"supports\"\n", "must be \"clamped\" or \"pinned\""},
       {series + "file = \"good.csv\"\nfrequncy = 1\n", "frequncy"},
-      {series + "file = \"good.csv\"\n[[series]]\nname = \"a\"\nfile = \"good.csv\"\n", "is taken by another series"},
+      {series + "file = \"good.csv\"\n[[series]]\nname = \"a\"\nfile = \"good.csv\"\n",
+       "is taken by another series"},
   };
   for (const auto& [text, message] : wrong) EXPECT_THAT(message_of(text), HasSubstr(message)) << text;
 }

@@ -29,7 +29,8 @@ struct TwoPlaces {
   explicit TwoPlaces(double weak) : model(series(), solver()) {
     std::mt19937 random(5);
     std::normal_distribution<double> normal;
-    fit.settings = {{&parameters().at("wire.axial_stiffness_N"), 0.0}, {&parameters().at("wire.length_mm"), 0.0}};
+    fit.settings = {{&parameters().at("wire.axial_stiffness_N"), 0.0},
+                    {&parameters().at("wire.length_mm"), 0.0}};
     fit.free = 2;
     for (std::size_t k = 0; k < 2; ++k) {
       Eigen::VectorXd computed = Eigen::VectorXd::LinSpaced(kReadings, 0.0, 40.0);
@@ -49,7 +50,8 @@ struct TwoPlaces {
     data.noise.source = "declared";
     // The optimum of this linear model: its numbers take their part of the noise.
     const Eigen::MatrixXd jacobian = data.jacobian(fit.evaluation);
-    const Eigen::VectorXd step = covariance_of(jacobian) * (jacobian.transpose() * data.residual(fit.evaluation));
+    const Eigen::VectorXd step =
+        covariance_of(jacobian) * (jacobian.transpose() * data.residual(fit.evaluation));
     for (std::size_t k = 0; k < 2; ++k) fit.evaluation.force[k] += fit.evaluation.by[k] * step;
     fit.residual = data.residual(fit.evaluation);
     fit.jacobian = jacobian;
@@ -90,7 +92,8 @@ TEST(LeftOut, APlaceIsPredictedByAFitToTheOther) {
     const Eigen::VectorXd left = t.data.measured[in] - t.fit.evaluation.force[in];
     const Eigen::MatrixXd& by = t.fit.evaluation.by[in];
     const Eigen::VectorXd step = (by.transpose() * by).inverse() * (by.transpose() * left);
-    squares += (t.data.measured[out] - t.fit.evaluation.force[out] - t.fit.evaluation.by[out] * step).squaredNorm();
+    squares +=
+        (t.data.measured[out] - t.fit.evaluation.force[out] - t.fit.evaluation.by[out] * step).squaredNorm();
   }
   EXPECT_NEAR(left_out_rmse(t.model, t.data, t.fit), std::sqrt(squares / (2 * kReadings)), 1e-9);
 }
@@ -102,7 +105,8 @@ TEST(LeftOut, DirectionsAreOfUnitChangeAndLeaveOutWhatNothingTells) {
   const Eigen::MatrixXd directions = unit_directions(jacobian);
   ASSERT_EQ(directions.cols(), 2);
   EXPECT_LT(
-      (directions.transpose() * jacobian.transpose() * jacobian * directions - Eigen::Matrix2d::Identity()).norm(),
+      (directions.transpose() * jacobian.transpose() * jacobian * directions - Eigen::Matrix2d::Identity())
+          .norm(),
       1e-12);
   const Eigen::Matrix2d inverse = (jacobian.leftCols(2).transpose() * jacobian.leftCols(2)).inverse();
   const Eigen::MatrixXd covariance = covariance_of(jacobian);

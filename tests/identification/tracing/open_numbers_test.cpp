@@ -85,7 +85,8 @@ TEST(OpenNumbers, AGainBesideBothStiffnessesIsOpen) {
     ASSERT_EQ(t.final.open.size(), 1u);
     EXPECT_THAT(null_words(t.final.open.front().changes), HasSubstr("scale together"));
     ASSERT_EQ(t.final.open.front().known.size(), 2u);  // what is known while the third is held
-    for (const FittedNumber& n : t.final.open.front().known) EXPECT_TRUE(n.lower && n.upper && n.standard_error);
+    for (const FittedNumber& n : t.final.open.front().known)
+      EXPECT_TRUE(n.lower && n.upper && n.standard_error);
     products.push_back(number(t, "wire.axial_stiffness_N").value * number(t, "reading.force_gain").value);
   }
   // All starts end at one product, to the tolerance of the iteration, 1e-6 of chi2, about a hundredth of a standard error.
@@ -151,7 +152,9 @@ TEST(ReadingFindings, TravelsThatGoDownAreNamedAndNothingElseIsSaid) {
     s.test.travel = s.readings->displacement;
   }
   const Trace t = trace(e, only_fit());
-  EXPECT_EQ(std::ranges::count_if(t.findings, [](const Finding& f) { return f.kind == FindingKind::sign_turned; }), 2);
+  EXPECT_EQ(
+      std::ranges::count_if(t.findings, [](const Finding& f) { return f.kind == FindingKind::sign_turned; }),
+      2);
   for (const FittedNumber& n : t.final.numbers) EXPECT_FALSE(n.identified || n.lower || n.upper) << n.key;
   EXPECT_NE(t.kind, VerdictKind::nothing_missing);
 }
@@ -185,9 +188,9 @@ TEST_P(UnitSlips, AreNamed) {
 
 INSTANTIATE_TEST_SUITE_P(Known, UnitSlips,
                          testing::Values(Slip{9.80665, 1.0, "kgf"}, Slip{1.0 / 9.80665, 1.0, "9.81"},
-                                         Slip{1e3, 1.0, "kN"}, Slip{1e-3, 1.0, "mN"}, Slip{1.0 / 25.4, 1.0, "25.4"},
-                                         Slip{4.4482216, 1.0, "lbf"}, Slip{1.0, 25.4, "inches"},
-                                         Slip{1.0, 1e3, "displacements in m "}));
+                                         Slip{1e3, 1.0, "kN"}, Slip{1e-3, 1.0, "mN"},
+                                         Slip{1.0 / 25.4, 1.0, "25.4"}, Slip{4.4482216, 1.0, "lbf"},
+                                         Slip{1.0, 25.4, "inches"}, Slip{1.0, 1e3, "displacements in m "}));
 
 // Stiffnesses that are merely other than declared are no slip of units.
 TEST(ReadingFindings, OtherStiffnessesAreNoSlip) {
@@ -206,7 +209,8 @@ TEST(ReadingFindings, OtherStiffnessesAreNoSlip) {
 
 TEST(ReadingFindings, ANumberOnItsBoundHasNoIntervalBeyondIt) {
   Experiment e = loose_wire();
-  for (Series& s : e.series) s.test.wire.axial_stiffness_override = 19300.0 / 8.0;  // at most five times as much
+  for (Series& s : e.series)
+    s.test.wire.axial_stiffness_override = 19300.0 / 8.0;  // at most five times as much
   e.free = {"wire.axial_stiffness_N"};
   const Trace t = trace(e, only_fit());
   const FittedNumber& n = number(t, "wire.axial_stiffness_N");
@@ -225,7 +229,8 @@ void collect(const nlohmann::json& schema, const nlohmann::json& object, const s
   }
   const nlohmann::json type = object.value("type", nlohmann::json());
   if (type == "number" || type == "integer") keys.push_back(prefix);
-  if (object.contains("items")) collect(schema, object["items"], prefix == "series" ? "series[s0]" : prefix, keys);
+  if (object.contains("items"))
+    collect(schema, object["items"], prefix == "series" ? "series[s0]" : prefix, keys);
   if (!object.contains("properties")) return;
   for (const auto& [name, inner] : object["properties"].items())
     collect(schema, inner, prefix.empty() ? name : prefix + "." + name, keys);
@@ -246,16 +251,20 @@ TEST(FreeNumbers, EveryKeyHasAnAnswerOrAReason) {
     return text.replace(text.find(from), from.size(), to);
   };
   const std::string bases[] = {
-      plain, with("kind = \"clamped\"", "kind = \"clamped\"\nslip_tension_N = 60.0\nrotational_stiffness_Nm_rad = 5.0"),
+      plain,
+      with("kind = \"clamped\"",
+           "kind = \"clamped\"\nslip_tension_N = 60.0\nrotational_stiffness_Nm_rad = 5.0"),
       with("friction = 0.0", "friction = 0.1") + "[gravity]\nvector_m_s2 = [0.0, -9.81, 0.0]\n",
       with("kind = \"clamped\"", "kind = \"supports\"\nsupport_radius_mm = 3.0")};
   int answers = 0, refusals = 0;
   for (const std::string& base : bases) {
     for (const std::string& key : keys) {
-      std::string text = "schema = \"snare-experiment/1\"\n" + base + "[solver]\nelements = 16\nextrapolate = false\n";
+      std::string text =
+          "schema = \"snare-experiment/1\"\n" + base + "[solver]\nelements = 16\nextrapolate = false\n";
       for (const char* s : {"s0", "s1"})
-        text += fmt::format("[[series]]\nname = \"{}\"\ncontact_position_mm = {}\ntravel_mm = 1.2\npoints = 7\n", s,
-                            s[1] == '0' ? 65.0 : 87.5);
+        text +=
+            fmt::format("[[series]]\nname = \"{}\"\ncontact_position_mm = {}\ntravel_mm = 1.2\npoints = 7\n",
+                        s, s[1] == '0' ? 65.0 : 87.5);
       text += fmt::format("[fit]\nfree = [\"{}\"]\n", key);
       try {
         Experiment e = parse_experiment("x.toml", text, parameters());
@@ -279,11 +288,12 @@ TEST(FreeNumbers, EveryKeyHasAnAnswerOrAReason) {
 
 TEST(FreeNumbers, WhatNoForceDependsOnIsRefusedWithItsReason) {
   Experiment e = loose_wire();
-  const std::pair<const char*, const char*> reasons[] = {{"wire.density_kg_m3", "the wire has no weight"},
-                                                         {"wire.youngs_modulus_GPa", "both stiffnesses are declared"},
-                                                         {"mount.support_radius_mm", "only a wire on supports"},
-                                                         {"wire.natural_curvature_1_m", "between rigid clamps"},
-                                                         {"rate_viscosity.relaxation_time_s", "no times"}};
+  const std::pair<const char*, const char*> reasons[] = {
+      {"wire.density_kg_m3", "the wire has no weight"},
+      {"wire.youngs_modulus_GPa", "both stiffnesses are declared"},
+      {"mount.support_radius_mm", "only a wire on supports"},
+      {"wire.natural_curvature_1_m", "between rigid clamps"},
+      {"rate_viscosity.relaxation_time_s", "no times"}};
   for (const auto& [key, why] : reasons) {
     e.free = {key};
     try {

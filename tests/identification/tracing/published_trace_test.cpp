@@ -21,8 +21,9 @@ Experiment published(const std::string& to_mm, std::vector<Override> changes) {
   for (const char* name : {"s40", "s65", "s90"}) {
     changes.push_back({std::string("series[") + name + "].law.to_mm", to_mm});
   }
-  Experiment e = read_experiment(std::filesystem::path(SNARE_SOURCE_DIR) / "data/experiments/published_static.toml",
-                                 parameters(), changes);
+  Experiment e =
+      read_experiment(std::filesystem::path(SNARE_SOURCE_DIR) / "data/experiments/published_static.toml",
+                      parameters(), changes);
   e.solver.elements = 32;  // errors of 1e-4 of the force, where these models are off by whole newtons
   return e;
 }

@@ -52,7 +52,8 @@ TEST(TraceInput, ARecordThatNeverTouchesIsRefused) {
 
 TEST(TraceInput, TooFewReadingsAreRefused) {
   Experiment e = experiment_of(3, [](int i) { return 1.0 * i; });
-  e.free = {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N", "wire.length_mm", "reading.force_offset_N"};
+  e.free = {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N", "wire.length_mm",
+            "reading.force_offset_N"};
   expect_refused(e, "must leave at least 3 degrees of freedom: at most 3 keys with 6 readings");
 }
 

@@ -140,8 +140,10 @@ TEST(Verdict, ToleranceIsWhatTheFileSays) {
 TEST(Verdict, StiffnessesBeyondTheSolidSectionAreFindings) {
   const Experiment e = computed(10, {65.0 * mm});
   const Model model(e.series, e.solver);
-  const double solid = e.series[0].test.wire.youngs_modulus * 0.25 * M_PI * std::pow(e.series[0].test.wire.diameter, 2);
-  FittedNumber n{"wire.axial_stiffness_N", "N", solid, 4.6 * solid, 0.1 * solid, 4.4 * solid, 4.8 * solid, false};
+  const double solid =
+      e.series[0].test.wire.youngs_modulus * 0.25 * M_PI * std::pow(e.series[0].test.wire.diameter, 2);
+  FittedNumber n{
+      "wire.axial_stiffness_N", "N", solid, 4.6 * solid, 0.1 * solid, 4.4 * solid, 4.8 * solid, false};
   ASSERT_EQ(beyond_construction(model, {n}).size(), 1u);
   EXPECT_TRUE(beyond_construction(model, {n})[0].sure);
   EXPECT_DOUBLE_EQ(beyond_construction(model, {n})[0].limit, solid);
@@ -182,8 +184,8 @@ TEST(Verdict, IsDecidedByAllThatIsAsked) {
   e.classes.push_back({"gravity"});
   e.left_out = {2.0, 1.0, 1.5};  // the second one does not help
   EXPECT_FALSE(is_decided(e));
-  for (bool Evidence::*what :
-       {&Evidence::cause_outside, &Evidence::one_condition, &Evidence::zero_in_doubt, &Evidence::something_left}) {
+  for (bool Evidence::*what : {&Evidence::cause_outside, &Evidence::one_condition, &Evidence::zero_in_doubt,
+                               &Evidence::something_left}) {
     e = good;
     e.*what = true;
     EXPECT_FALSE(is_decided(e));
@@ -220,9 +222,9 @@ TEST(Verdict, NoZeroIsLookedForBesideAFittedOne) {
   const Experiment e = computed(40, {65.0 * mm});
   Fitted f = fitted(e, 0.05);
   EXPECT_TRUE(check_zero(f.model, f.data, f.fit).has_value());
-  f.fit = fit(
-      f.model, f.data,
-      {{&parameters().at("wire.axial_stiffness_N"), 0.0}, {&parameters().at("reading.displacement_offset_mm"), 0.0}});
+  f.fit = fit(f.model, f.data,
+              {{&parameters().at("wire.axial_stiffness_N"), 0.0},
+               {&parameters().at("reading.displacement_offset_mm"), 0.0}});
   EXPECT_FALSE(check_zero(f.model, f.data, f.fit).has_value());
 }
 

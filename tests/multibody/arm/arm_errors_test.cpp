@@ -33,13 +33,15 @@ class WrongArm : public testing::TestWithParam<WrongFile> {};
 
 TEST_P(WrongUrdf, HasItsMessage) {
   const std::string text = test::edited(test::valid_urdf, GetParam().from, GetParam().to);
-  EXPECT_EQ(message_of([&] { static_cast<void>(multibody::parse_urdf("x.urdf", text)); }), GetParam().message);
+  EXPECT_EQ(message_of([&] { static_cast<void>(multibody::parse_urdf("x.urdf", text)); }),
+            GetParam().message);
 }
 
 TEST_P(WrongArm, HasItsMessage) {
   // Other files are looked for beside the file; messages name it as it was given.
   const auto before = std::filesystem::current_path();
-  const auto folder = std::filesystem::temp_directory_path() / ("snare_wrong_arm_" + std::to_string(::getpid()));
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("snare_wrong_arm_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   std::filesystem::current_path(folder);
   std::ofstream("two_links.urdf") << test::valid_urdf;
@@ -64,8 +66,9 @@ TEST(EndlessUrdf, IsRefused) {
   std::string chain = "<robot name='r'><link name='l0'/>";
   for (int i = 1; i < many; ++i) {
     chain += fmt::format(
-        "<link name='l{0}'/><joint name='j{0}' type='fixed'><parent link='l{1}'/><child link='l{0}'/></joint>", i,
-        i - 1);
+        "<link name='l{0}'/><joint name='j{0}' type='fixed'><parent link='l{1}'/><child "
+        "link='l{0}'/></joint>",
+        i, i - 1);
   }
   EXPECT_EQ(message(chain + "</robot>"), "x.urdf:1: robot = 40000 links, must have at most 2000");
   EXPECT_EQ(message("<!DOCTYPE robot [<!ENTITY a 'a'>]>\n<robot name='r'><link name='a'/></robot>"),
@@ -85,15 +88,18 @@ const WrongFile wrong_urdfs[] = {
     {"<?xml version=\"1.0\"?>\n<robot name=\"two_links\">", "<robot name=\"two_links\"",
      "x.urdf:2: is no XML: Error reading Attributes"},
     {"</robot>", "", "x.urdf:36: is no XML: Error reading end tag"},
-    {"<robot name=\"two_links\">", "<machine name=\"two_links\">", "x.urdf:35: is no XML: Error reading end tag"},
+    {"<robot name=\"two_links\">", "<machine name=\"two_links\">",
+     "x.urdf:35: is no XML: Error reading end tag"},
     {"<robot name=\"two_links\">", "<robot>", "x.urdf:2: robot.name, must be given"},
     {"  <link name=\"base\"/>\n", "  <link/>\n",
-     "x.urdf:3: link.name, must be given\nx.urdf:19: joint[shoulder].parent = \"base\", must be a link of this file"},
+     "x.urdf:3: link.name, must be given\nx.urdf:19: joint[shoulder].parent = \"base\", must be a link of "
+     "this file"},
     {"<link name=\"tip\"/>", "<link name=\"upper\"/>",
      "x.urdf:17: link[upper], must not be given twice; the first is in line 4\nx.urdf:32: joint[tool].child "
      "= \"tip\", must be a link of this file"},
     {"<mass value=\"10\"/>", "", "x.urdf:5: link[upper].inertial, must have a <mass>"},
-    {"<mass value=\"10\"/>", "<mass value=\"-10\"/>", "x.urdf:7: link[upper].inertial.mass = -10, must be > 0 kg"},
+    {"<mass value=\"10\"/>", "<mass value=\"-10\"/>",
+     "x.urdf:7: link[upper].inertial.mass = -10, must be > 0 kg"},
     {"<mass value=\"10\"/>", "<mass value=\"ten\"/>",
      "x.urdf:7: link[upper].inertial.mass = \"ten\", must be a number"},
     {"<mass value=\"10\"/>", "<mass value=\"1e9\"/>",
@@ -104,13 +110,15 @@ const WrongFile wrong_urdfs[] = {
     {"iyy=\"0.9\" iyz=\"0\" izz=\"0.9\"", "iyy=\"0.9\" izz=\"0.9\"",
      "x.urdf:8: link[upper].inertial.inertia.iyz, must be a number"},
     {"ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.9\"", "ixx=\"0.1\" ixy=\"2\" ixz=\"0\" iyy=\"0.9\"",
-     "x.urdf:8: link[upper].inertial.inertia = principal moments -1.54, 0.9, 2.54, must be positive definite"},
+     "x.urdf:8: link[upper].inertial.inertia = principal moments -1.54, 0.9, 2.54, must be positive "
+     "definite"},
     {"ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.9\"", "ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.1\"",
      "x.urdf:8: link[upper].inertial.inertia = principal moments 0.1, 0.1, 0.9, must satisfy the triangle "
      "inequality: none larger than the sum of the others"},
     {"ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.9\"", "ixx=\"0.1\" ixy=\"nan\" ixz=\"0\" iyy=\"0.9\"",
      "x.urdf:8: link[upper].inertial.inertia.ixy = \"nan\", must be a number"},
-    {"xyz=\"0.5 0 0\"", "xyz=\"0.5 0\"", "x.urdf:6: link[upper].inertial.origin.xyz = \"0.5 0\", must be 3 numbers"},
+    {"xyz=\"0.5 0 0\"", "xyz=\"0.5 0\"",
+     "x.urdf:6: link[upper].inertial.origin.xyz = \"0.5 0\", must be 3 numbers"},
     {"xyz=\"0.5 0 0\"", "xyz=\"0.5 0 0mm\"",
      "x.urdf:6: link[upper].inertial.origin.xyz = \"0.5 0 0mm\", must be 3 numbers"},
     {"<origin xyz=\"1 0 0\" rpy=\"0 0 0\"/>", "<origin xyz=\"1000.5 0 0\" rpy=\"0 0 0\"/>",
@@ -131,10 +139,12 @@ const WrongFile wrong_urdfs[] = {
     {"<child link=\"lower\"/>", "<child link=\"upper\"/>",
      "x.urdf:24: joint[elbow].child = \"upper\", must not be the parent"},
     {"<child link=\"tip\"/>", "<child link=\"upper\"/>",
-     "x.urdf:30: joint[tool].child = \"upper\", must not have a second parent: joint \"shoulder\" carries it already"},
+     "x.urdf:30: joint[tool].child = \"upper\", must not have a second parent: joint \"shoulder\" carries it "
+     "already"},
     {"<parent link=\"base\"/>", "<parent link=\"tip\"/>",
      "x.urdf:11: link[lower], must not be in a closed loop of joints"},
-    {"<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>", "x.urdf:28: joint[elbow].axis = \"0 0 0\", must not be zero"},
+    {"<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>",
+     "x.urdf:28: joint[elbow].axis = \"0 0 0\", must not be zero"},
     {"<limit lower=\"-3\" upper=\"3\" effort=\"100\" velocity=\"1\"/>", "",
      "x.urdf:18: joint[shoulder], must have a <limit>; a continuous joint needs none"},
     {"lower=\"-3\" upper=\"3\"", "lower=\"3\" upper=\"-3\"",
@@ -146,7 +156,8 @@ const WrongFile wrong_urdfs[] = {
     {"<inertial>\n      <mass value=\"5\"/>\n      <inertia ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.3\" "
      "iyz=\"0\" izz=\"0.3\"/>\n    </inertial>",
      "",
-     "x.urdf: joint[elbow].child = \"lower\", must carry mass: neither this link nor any behind it has an <inertial>"},
+     "x.urdf: joint[elbow].child = \"lower\", must carry mass: neither this link nor any behind it has an "
+     "<inertial>"},
     {"  <joint name=\"tool\" type=\"fixed\">\n    <parent link=\"lower\"/>\n    <child link=\"tip\"/>\n    "
      "<origin xyz=\"0.7 0 0\"/>\n  </joint>\n",
      "", "x.urdf: robot = \"base\", \"tip\", must have one root link; these are carried by no joint"},
@@ -156,7 +167,8 @@ const WrongFile wrong_arms[] = {
      "x.toml:1: schema = \"snare-arm/2\", must be \"snare-arm/1\""},
     {"urdf   = \"two_links.urdf\"", "urdf   = \"three_links.urdf\"", "three_links.urdf: no such file"},
     {"urdf   = \"two_links.urdf\"\n", "", "x.toml: urdf, missing, must name a URDF file"},
-    {"tip    = \"tip\"", "tip    = \"tipp\"", "x.toml:5: tip = \"tipp\", must be a link; did you mean \"tip\"?"},
+    {"tip    = \"tip\"", "tip    = \"tipp\"",
+     "x.toml:5: tip = \"tipp\", must be a link; did you mean \"tip\"?"},
     {"[joint.elbow]", "[joint.elbwo]", "x.toml:17: joint.elbwo, unknown key; did you mean elbow?"},
     {"rotor_inertia_kg_m2 = 1e-3", "rotor_inertia_kg_m2 = 0.0",
      "x.toml:8: every_joint.rotor_inertia_kg_m2 = 0.0, must be > 0 and <= 1e+15"},
@@ -203,7 +215,8 @@ const WrongFile wrong_arms[] = {
     {"tip    = \"tip\"", "tip    = \"tip\"\nbase = { kind = \"floating\" }",
      "x.toml:6: base.kind = \"floating\", must be \"fixed\" or \"free\""},
     {"[[pose]]", "[[payload]]\nurdf = \"two_links.urdf\"\non = \"tip\"\n\n[[pose]]",
-     "x.toml:24: payload[1].urdf = \"two_links.urdf\", must not have a link \"base\": another file has it already"},
+     "x.toml:24: payload[1].urdf = \"two_links.urdf\", must not have a link \"base\": another file has it "
+     "already"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, WrongUrdf, testing::ValuesIn(wrong_urdfs));
@@ -212,7 +225,8 @@ INSTANTIATE_TEST_SUITE_P(Table, WrongArm, testing::ValuesIn(wrong_arms));
 }  // namespace
 
 TEST(ArmErrors, TheFilesThatAreBrokenAreRightBefore) {
-  EXPECT_EQ(message_of([] { static_cast<void>(multibody::parse_urdf("x.urdf", test::valid_urdf)); }), "accepted");
+  EXPECT_EQ(message_of([] { static_cast<void>(multibody::parse_urdf("x.urdf", test::valid_urdf)); }),
+            "accepted");
 }
 
 }  // namespace snare

@@ -36,7 +36,8 @@ TEST(ArmFile, ShippedArmsHaveTheirPublishedSums) {
 }
 
 TEST(ArmFile, DynamicsOfTheUrdfAreFrictionWhereTheFileHasNone) {
-  const auto folder = std::filesystem::temp_directory_path() / ("snare_arm_dynamics_" + std::to_string(::getpid()));
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("snare_arm_dynamics_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "two_links.urdf") << test::edited(
       test::valid_urdf, "velocity=\"1\"/>", "velocity=\"1\"/><dynamics damping=\"0.7\" friction=\"3.5\"/>");
@@ -46,7 +47,8 @@ TEST(ArmFile, DynamicsOfTheUrdfAreFrictionWhereTheFileHasNone) {
   EXPECT_EQ(of_urdf.arm.joints[0].friction.breakaway, 3.5);
   EXPECT_EQ(of_urdf.arm.joints[1].friction.viscous, 0.0);
   const multibody::ArmDescription of_file = multibody::parse_arm(
-      folder / "x.toml", test::edited(test::valid_arm, "[every_joint]\n", "[every_joint]\ncoulomb_Nm = 0.5\n"));
+      folder / "x.toml",
+      test::edited(test::valid_arm, "[every_joint]\n", "[every_joint]\ncoulomb_Nm = 0.5\n"));
   EXPECT_EQ(of_file.arm.joints[0].friction.viscous, 0.7);
   EXPECT_EQ(of_file.arm.joints[0].friction.coulomb, 0.5);
   std::filesystem::remove_all(folder);
@@ -57,17 +59,19 @@ TEST(ArmFile, NumbersLikelyInAnotherUnitAreDoubted) {
     return multibody::parse_urdf("x.urdf", test::edited(test::valid_urdf, from, to)).warnings;
   };
   EXPECT_THAT(multibody::parse_urdf("x.urdf", test::valid_urdf).warnings, testing::IsEmpty());
-  EXPECT_THAT(warnings("lower=\"-3\" upper=\"3\"", "lower=\"-180\" upper=\"180\""),
-              testing::ElementsAre("joint shoulder: its limits of -180 to 180 rad are more than a turn: are they in "
-                                   "degrees? URDF is in radians"));
+  EXPECT_THAT(
+      warnings("lower=\"-3\" upper=\"3\"", "lower=\"-180\" upper=\"180\""),
+      testing::ElementsAre("joint shoulder: its limits of -180 to 180 rad are more than a turn: are they in "
+                           "degrees? URDF is in radians"));
   EXPECT_THAT(warnings("lower=\"-3\" upper=\"3\"", "lower=\"-6.2832\" upper=\"6.2832\""), testing::IsEmpty());
   // sqrt(9e5 / 10) = 300 m on an arm of 1.7 m.
-  EXPECT_THAT(
-      warnings("ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.9\" iyz=\"0\" izz=\"0.9\"",
-               "ixx=\"1e5\" ixy=\"0\" ixz=\"0\" iyy=\"9e5\" iyz=\"0\" izz=\"9e5\""),
-      testing::ElementsAre("link upper: its radius of gyration of 300 m is larger than the robot's reach of 1.7 "
-                           "m: is the inertia in kg mm2? URDF is in kg m2"));
-  for (const char* file : {"ssrms_like.toml", "jemrms_like.toml", "ssrms_on_station.toml", "jemrms_with_payload.toml"})
+  EXPECT_THAT(warnings("ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.9\" iyz=\"0\" izz=\"0.9\"",
+                       "ixx=\"1e5\" ixy=\"0\" ixz=\"0\" iyy=\"9e5\" iyz=\"0\" izz=\"9e5\""),
+              testing::ElementsAre(
+                  "link upper: its radius of gyration of 300 m is larger than the robot's reach of 1.7 "
+                  "m: is the inertia in kg mm2? URDF is in kg m2"));
+  for (const char* file :
+       {"ssrms_like.toml", "jemrms_like.toml", "ssrms_on_station.toml", "jemrms_with_payload.toml"})
     EXPECT_THAT(shipped(file).warnings, testing::IsEmpty()) << file;
 }
 
@@ -87,12 +91,14 @@ TEST(ArmFile, BodiesAreThoseOfTheirSources) {
     Eigen::Vector3d moments;
   };
   // HTV: a uniform cylinder of 16 t, 9.8 m, 4.4 m. Visitor: a uniform sphere of 1.3 m radius, rounded.
-  const double htv_axial = 0.5 * 16000.0 * 2.2 * 2.2, htv_across = 16000.0 * (3.0 * 2.2 * 2.2 + 9.8 * 9.8) / 12.0;
+  const double htv_axial = 0.5 * 16000.0 * 2.2 * 2.2,
+               htv_across = 16000.0 * (3.0 * 2.2 * 2.2 + 9.8 * 9.8) / 12.0;
   for (const Case& c : {Case{"htv_like.urdf", 16000.0, {htv_axial, htv_across, htv_across}},
                         Case{"visitor_small.urdf", 1300.0, Eigen::Vector3d::Constant(0.4 * 1300.0 * 1.69)},
                         Case{"air_table_body.urdf", 8.9, Eigen::Vector3d::Constant(0.16)},
                         Case{"payload_abiko.urdf", 500.0, {415.0, 83.0, 415.0}}}) {
-    const auto robot = multibody::read_urdf(std::filesystem::path(SNARE_SOURCE_DIR) / "data" / "arms" / c.file);
+    const auto robot =
+        multibody::read_urdf(std::filesystem::path(SNARE_SOURCE_DIR) / "data" / "arms" / c.file);
     double mass = 0.0;
     Eigen::Vector3d moments = Eigen::Vector3d::Zero();
     for (const auto& link : robot.links) {

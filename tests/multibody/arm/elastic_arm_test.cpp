@@ -17,23 +17,25 @@ using test::Base;
 }  // namespace
 
 TEST(ElasticArm, JacobianOfTheDaeMatchesDifferences) {
-  const auto by_forces = multibody::BaseEquations::newton_euler, by_momentum = multibody::BaseEquations::momentum;
-  for (const auto& [base, equations] : {std::pair(Base::on_the_world, by_forces), std::pair(Base::floating, by_forces),
-                                        std::pair(Base::floating, by_momentum)}) {
+  const auto by_forces = multibody::BaseEquations::newton_euler,
+             by_momentum = multibody::BaseEquations::momentum;
+  for (const auto& [base, equations] :
+       {std::pair(Base::on_the_world, by_forces), std::pair(Base::floating, by_forces),
+        std::pair(Base::floating, by_momentum)}) {
     multibody::ElasticArm arm = test::chain_arm(4, base, 30.0);
     if (equations == by_forces) arm.tree.gravity = {0.3, -1.0, 2.0};
     arm.joints[0].spring = multibody::DeflectionLaw({{0.0, 5.0, 2.0}, {0.1, 30.0, 3.0}});
-    arm.joints[1].spring = multibody::DeflectionLaw({{0.0, 5.0, 2.0}}, multibody::StiffnessReading::continuous,
-                                                    multibody::DampingRate::motor);
+    arm.joints[1].spring = multibody::DeflectionLaw(
+        {{0.0, 5.0, 2.0}}, multibody::StiffnessReading::continuous, multibody::DampingRate::motor);
     arm.joints[2].friction = {1.0, 2.0, 0.5, 0.3};
     // Within the ramp of a wide jump, on both rates.
     const auto reading = multibody::StiffnessReading::literal;
     arm.joints[2].spring = multibody::DeflectionLaw({{0.0, 5.0, 2.0}, {2.0, 30.0, 6.0}}, reading,
                                                     multibody::DampingRate::deflection, 1.999);
-    arm.joints[1].spring =
-        multibody::DeflectionLaw({{0.0, 5.0, 2.0}, {2.0, 30.0, 6.0}}, reading, multibody::DampingRate::motor, 1.999);
-    const int tip =
-        arm.tree.add_fixed(arm.tree.find_frame("link3"), "tip", {Eigen::Matrix3d::Identity(), {1.0, 0.2, 0.1}});
+    arm.joints[1].spring = multibody::DeflectionLaw({{0.0, 5.0, 2.0}, {2.0, 30.0, 6.0}}, reading,
+                                                    multibody::DampingRate::motor, 1.999);
+    const int tip = arm.tree.add_fixed(arm.tree.find_frame("link3"), "tip",
+                                       {Eigen::Matrix3d::Identity(), {1.0, 0.2, 0.1}});
     std::vector<Drive> drives{Drive::holding(0.2, 8.0, 3.0), Drive::limp(), Drive::limp(), Drive::locked()};
     std::vector<multibody::TimedLoad> loads{
         {tip, {{0.5, -0.3, 0.7}, {2.0, 1.0, -1.5}}, 0.0, 10.0, multibody::TimedLoad::Shape::half_sine}};
@@ -89,7 +91,8 @@ TEST(ElasticArm, FrequenciesOfAChainAreThoseOfTheMassMatrix) {
 }
 
 TEST(ElasticArm, UndampedEnergyStaysOverAHundredSeconds) {
-  auto run = validation::at_rest(test::chain_arm(3, Base::on_the_world, 400.0), Drive::locked(), 100.0, 1e-11);
+  auto run =
+      validation::at_rest(test::chain_arm(3, Base::on_the_world, 400.0), Drive::locked(), 100.0, 1e-11);
   run.initial.q << 0.3, -0.2, 0.25;
   run.sample = 0.5;
   const auto history = multibody::simulate(run);
@@ -110,8 +113,8 @@ TEST(ElasticArm, MomentumOfAFloatingArmStays) {
   double drift = 0.0;
   for (const auto& sample : history.samples) {
     const auto change = (sample.momentum.vector() - first).eval();
-    drift = std::max(
-        {drift, change.head<3>().norm() / first.head<3>().norm(), change.tail<3>().norm() / first.tail<3>().norm()});
+    drift = std::max({drift, change.head<3>().norm() / first.head<3>().norm(),
+                      change.tail<3>().norm() / first.tail<3>().norm()});
   }
   EXPECT_LT(drift / 10.0, 1e-12);
   EXPECT_LT(history.energy_error, 1e-8);
@@ -128,7 +131,8 @@ TEST(ElasticArm, StiffSpringsGiveTheRigidArm) {
   const auto acceleration = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& v) -> Eigen::VectorXd {
     Eigen::MatrixXd H = multibody::mass_matrix(rigid.tree, q, workspace);
     H.diagonal().array() += 2.0;
-    const Eigen::VectorXd bias = multibody::inverse_dynamics(rigid.tree, q, v, Eigen::VectorXd::Zero(3), {}, workspace);
+    const Eigen::VectorXd bias =
+        multibody::inverse_dynamics(rigid.tree, q, v, Eigen::VectorXd::Zero(3), {}, workspace);
     return H.ldlt().solve(torque - bias);
   };
   Eigen::VectorXd q = Eigen::VectorXd::Zero(3), v = q;
@@ -145,9 +149,11 @@ TEST(ElasticArm, StiffSpringsGiveTheRigidArm) {
   for (const double stiffness : {1e4, 1e5, 1e6}) {
     auto arm = test::chain_arm(3, Base::on_the_world, stiffness);
     auto run = validation::at_rest(arm, Drive::limp(), end, 1e-9);
-    for (int k = 0; k < 3; ++k) {  // a servo at its limit is a constant torque; a critical damper lets the gear settle
+    for (int k = 0; k < 3;
+         ++k) {  // a servo at its limit is a constant torque; a critical damper lets the gear settle
       const auto i = static_cast<std::size_t>(k);
-      run.arm.joints[i].spring = multibody::DeflectionLaw::linear(stiffness, 2.0 * std::sqrt(2.0 * stiffness));
+      run.arm.joints[i].spring =
+          multibody::DeflectionLaw::linear(stiffness, 2.0 * std::sqrt(2.0 * stiffness));
       run.drives[i] = Drive::holding(torque[k] > 0.0 ? 1e6 : -1e6, 1.0, 0.0, std::abs(torque[k]));
     }
     const auto history = multibody::simulate(run);

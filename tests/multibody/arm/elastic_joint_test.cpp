@@ -21,7 +21,8 @@ std::vector<double> rising_zeros(const multibody::ArmHistory& history) {
     const auto& b = history.samples[i + 1];
     if (!(a.deflection[0] < 0.0 && b.deflection[0] >= 0.0)) continue;
     const double h = b.time - a.time;
-    const double va = h * (a.state.v[0] - a.state.motor_rate[0]), vb = h * (b.state.v[0] - b.state.motor_rate[0]);
+    const double va = h * (a.state.v[0] - a.state.motor_rate[0]),
+                 vb = h * (b.state.v[0] - b.state.motor_rate[0]);
     double s = 0.5;
     for (int k = 0; k < 60; ++k) {
       const double f = (1 + 2 * s) * (1 - s) * (1 - s) * a.deflection[0] + s * (1 - s) * (1 - s) * va +
@@ -50,8 +51,11 @@ double closed_period(double inertia, double k0, double k1, double a, double A) {
 
 TEST(DeflectionLaw, ReadsTable2BothWays) {
   const double degree = pi / 180.0;
-  const auto continuous = test::table2(1.0), literal = test::table2(1.0, multibody::StiffnessReading::literal);
-  const auto torque = [](const multibody::DeflectionLaw& law, double d) { return law.torque(law.branch_of(d), d); };
+  const auto continuous = test::table2(1.0),
+             literal = test::table2(1.0, multibody::StiffnessReading::literal);
+  const auto torque = [](const multibody::DeflectionLaw& law, double d) {
+    return law.torque(law.branch_of(d), d);
+  };
   // The digest's reading: 0.5 N m + 475 (|d| - 0.04); the literal one jumps from 0.5 to 19 N m.
   EXPECT_NEAR(torque(continuous, 0.04 * degree), 0.5, 1e-12);
   EXPECT_NEAR(torque(continuous, -0.1 * degree), -(0.5 + 475.0 * 0.06), 1e-12);
@@ -157,7 +161,8 @@ TEST(ElasticJoint, FrequenciesAreThoseOfTwoMasses) {
   ASSERT_GT(zeros.size(), 5U);
   // The integrator's error is some ten times its tolerance of 1e-9; Hermite's cubic errs by (w h)^4/384 = 1e-7 of a
   // period at its ends only, which the number of periods divides.
-  EXPECT_NEAR((zeros.back() - zeros.front()) / static_cast<double>(zeros.size() - 1) * limp[1].frequency, 1.0, 1e-6);
+  EXPECT_NEAR((zeros.back() - zeros.front()) / static_cast<double>(zeros.size() - 1) * limp[1].frequency, 1.0,
+              1e-6);
 }
 
 TEST(ElasticJoint, PeriodFollowsTheAmplitudeOfThePiecewiseLaw) {
@@ -173,7 +178,8 @@ TEST(ElasticJoint, PeriodFollowsTheAmplitudeOfThePiecewiseLaw) {
     ASSERT_GT(zeros.size(), 1U);
     const double period = (zeros.back() - zeros.front()) / static_cast<double>(zeros.size() - 1);
     // Asked for within 1e-4; the integration is good to some 1e-7 over these few periods.
-    EXPECT_NEAR(period / closed_period(H, 12.5 / degree, 475.0 / degree, 0.04 * degree, amplitude * degree), 1.0, 1e-5)
+    EXPECT_NEAR(period / closed_period(H, 12.5 / degree, 475.0 / degree, 0.04 * degree, amplitude * degree),
+                1.0, 1e-5)
         << amplitude;
     EXPECT_LT(history.energy_error, 1e-6) << amplitude;
   }
@@ -184,16 +190,19 @@ TEST(ElasticJoint, PassesTheJumpsWithoutThrashing) {
   // literal reading with a torque that jumps by 18.5 N m.
   for (const auto reading : {multibody::StiffnessReading::continuous, multibody::StiffnessReading::literal}) {
     const double degree = pi / 180.0;
-    auto run =
-        validation::at_rest(test::one_joint(20000.0, 1.0, test::table2(1.0, reading)), Drive::locked(), 60.0, 1e-7);
+    auto run = validation::at_rest(test::one_joint(20000.0, 1.0, test::table2(1.0, reading)), Drive::locked(),
+                                   60.0, 1e-7);
     run.initial.q[0] = 0.5 * degree;
     run.tolerances.coordinate = run.tolerances.rate = 1e-11;
     const auto history = multibody::simulate(run);
     ASSERT_TRUE(history.report.usable()) << history.report.message;
     int crossings = 0;
-    const auto piece = [&](double d) { return (std::abs(d) >= 0.04 * degree) + (std::abs(d) >= 0.06 * degree); };
+    const auto piece = [&](double d) {
+      return (std::abs(d) >= 0.04 * degree) + (std::abs(d) >= 0.06 * degree);
+    };
     for (std::size_t i = 1; i < history.samples.size(); ++i) {
-      crossings += std::abs(piece(history.samples[i].deflection[0]) - piece(history.samples[i - 1].deflection[0]));
+      crossings +=
+          std::abs(piece(history.samples[i].deflection[0]) - piece(history.samples[i - 1].deflection[0]));
     }
     EXPECT_GT(crossings, 4);
     EXPECT_EQ(static_cast<int>(history.events.size()), crossings);
@@ -208,9 +217,9 @@ TEST(ElasticJoint, PassesTheJumpsWithoutThrashing) {
 
 TEST(ElasticJoint, BacklashLetsTheLinkFlyFreely) {
   const double gap = 0.01, speed = 0.02, H = 2.0, K = 50.0;
-  auto run =
-      validation::at_rest(test::one_joint(H, 1.0, multibody::DeflectionLaw({{0.0, 0.0, 0.0, 0.0}, {gap, K, 0.0, 0.0}})),
-                          Drive::locked(), 20.0, 1e-11);
+  auto run = validation::at_rest(
+      test::one_joint(H, 1.0, multibody::DeflectionLaw({{0.0, 0.0, 0.0, 0.0}, {gap, K, 0.0, 0.0}})),
+      Drive::locked(), 20.0, 1e-11);
   run.initial.v[0] = speed;
   run.tolerances = {1e-13, 1e-13};  // of angles of 1e-2 and an energy of 4e-4 J
   const auto history = multibody::simulate(run);
@@ -247,8 +256,11 @@ TEST(ElasticJoint, BackDriveTorqueHoldsALimpJointUntilTheLoadExceedsIt) {
   for (const double moment : {4.9, 20.0}) {
     auto run = validation::at_rest(arm, Drive::limp(), 4.0, 1e-8);
     // A constant moment on a spring swings to twice its static deflection, so 4.9 N m stays below 10 and 20 does not.
-    run.loads.push_back(
-        {1, {{0.0, 0.0, moment}, Eigen::Vector3d::Zero()}, 0.5, 100.0, multibody::TimedLoad::Shape::constant});
+    run.loads.push_back({1,
+                         {{0.0, 0.0, moment}, Eigen::Vector3d::Zero()},
+                         0.5,
+                         100.0,
+                         multibody::TimedLoad::Shape::constant});
     const auto history = multibody::simulate(run);
     ASSERT_TRUE(history.report.usable()) << history.report.message;
     const double turned = history.samples.back().state.motor[0];

@@ -73,7 +73,8 @@ TEST_F(FlexibleLink, StiffensToTheRigidArm) {
 }
 
 TEST_F(FlexibleLink, PosesAndJointsKnowNothingOfIt) {
-  const ArmDescription arm = beam("[link.beam]\nbending_compliance_rad_Nm = 1e-3\nbending_damping_time_s = 0.02\n");
+  const ArmDescription arm =
+      beam("[link.beam]\nbending_compliance_rad_Nm = 1e-3\nbending_damping_time_s = 0.02\n");
   ASSERT_EQ(arm.joints.size(), 1U);
   ASSERT_EQ(arm.arm.motors(), 3);
   ASSERT_EQ(arm.poses[0].angles.size(), 3);
@@ -92,7 +93,8 @@ TEST_F(FlexibleLink, PosesAndJointsKnowNothingOfIt) {
 TEST_F(FlexibleLink, WhatCannotBendIsRefused) {
   const char* needed =
       "bending_compliance_rad_Nm = 1e-3, only of a link on a moving joint that has a mass and a length";
-  EXPECT_THAT(test::refusal([&] { return beam("[link.end]\nbending_compliance_rad_Nm = 1e-3\n"); }), HasSubstr(needed));
+  EXPECT_THAT(test::refusal([&] { return beam("[link.end]\nbending_compliance_rad_Nm = 1e-3\n"); }),
+              HasSubstr(needed));
   EXPECT_THAT(test::refusal([&] { return beam("[link.stand]\nbending_compliance_rad_Nm = 1e-3\n"); }),
               HasSubstr(needed));
   EXPECT_THAT(test::refusal([&] { return beam("[link.beam]\nbending_compliance_rad_Nm = 1e-300\n"); }),
