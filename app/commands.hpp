@@ -16,14 +16,13 @@ using namespace results;
 [[nodiscard]] ExitStatus run_push(const std::filesystem::path& experiment, const CommonOptions& options,
                                   Console& console);
 
-/// The static wire tests of the literature beside the computed curves: curves.csv, reproduce.json, report.html,
-/// traced.toml.
-/// `experiment` empty: the shipped file of the published tests.
+/// The static wire tests of the literature beside the computed curves: curves.csv, reproduce.json,
+/// report.html, traced.toml. `experiment` empty: the shipped file of the published tests.
 [[nodiscard]] ExitStatus run_reproduce(const std::filesystem::path& experiment, const CommonOptions& options,
                                        Console& console);
 
-/// `snare reproduce WORD`: "abiko", "na", "honda" or "all" makes the figures and tables of these papers: a page a paper, figures.json. Anything
-/// else is an experiment file.
+/// `snare reproduce WORD`: "abiko", "na", "honda" or "all" makes the figures and tables of these papers: a
+/// page a paper, figures.json. Anything else is an experiment file.
 [[nodiscard]] ExitStatus run_reproduce_word(const std::filesystem::path& what, const CommonOptions& options,
                                             Console& console);
 
@@ -35,7 +34,8 @@ using namespace results;
 [[nodiscard]] ExitStatus run_trace(const std::filesystem::path& experiment, const CommonOptions& options,
                                    Console& console);
 
-/// Spring laws and stiffness tables of one wire: law.json, table.csv, report.html, sources in other languages.
+/// Spring laws and stiffness tables of one wire: law.json, table.csv, report.html, sources in other
+/// languages.
 [[nodiscard]] ExitStatus run_distil(const std::filesystem::path& wire, const CommonOptions& options,
                                     Console& console);
 

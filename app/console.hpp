@@ -37,8 +37,8 @@ class Console {
   void complain(const std::string& text);
   /// What is doubtful about a result; it stands in the result, too.
   void warn(const std::string& text) { say("warning: " + text); }
-  /// Progress: in one line that is overwritten, or where standard error is no terminal in a line every `told_every_s`, for a log.
-  /// Also the stage of an interruption.
+  /// Progress: in one line that is overwritten, or where standard error is no terminal in a line every
+  /// `told_every_s`, for a log. Also the stage of an interruption.
   void progress(const std::string& text);
   void end_progress();
 
@@ -51,8 +51,8 @@ class Console {
       std::chrono::steady_clock::now();  ///< when progress was told to a log
 };
 
-/// Writes a result into its file in the folder of the results, and to standard output where that is asked for: the last thing that a
-/// verb writes.
+/// Writes a result into its file in the folder of the results, and to standard output where that is asked
+/// for: the last thing that a verb writes.
 void write_result(const CommonOptions& options, const char* file, const nlohmann::json& result);
 
 /// The same of a verb that writes it into no file.

@@ -31,7 +31,8 @@ sem_t interrupt_came;  // sem_post is one of the few calls that a handler may ma
 extern "C" void on_signal(int number) {
   interrupt_flag.store(true);
   sem_post(&interrupt_came);
-  // A second one ends the process, but for the limit of processor time, of which every further second is reported.
+  // A second one ends the process, but for the limit of processor time, of which every further second is
+  // reported.
   std::signal(number, number == SIGXCPU ? SIG_IGN : SIG_DFL);
 }
 
@@ -50,7 +51,8 @@ Work& work() {
   return *one;
 }
 
-/// Ends the process from the thread that waits. Holds the lock of the work: nothing of it begins to write any more.
+/// Ends the process from the thread that waits. Holds the lock of the work: nothing of it begins to write any
+/// more.
 [[noreturn]] void leave(Work& w) {
   std::string kept = "nothing was finished, nothing is kept";
   try {

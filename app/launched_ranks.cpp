@@ -10,7 +10,8 @@ namespace snare::app {
 
 namespace {
 
-/// What launchers set for the processes that they start: Open MPI; MPICH and Intel; Slurm's srun with its PMI.
+/// What launchers set for the processes that they start: Open MPI; MPICH and Intel; Slurm's srun with its
+/// PMI.
 constexpr const char* sizes[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE"};
 
 bool launched() {
@@ -24,8 +25,8 @@ bool launched() {
 std::unique_ptr<study::Ranks> launched_ranks() {
   if (!launched()) return nullptr;
   const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  // Beside the command in a build tree, in the libraries' folder of an installation. Open MPI's own plug-ins look for its
-  // symbols among those of the process, so they must be seen by all.
+  // Beside the command in a build tree, in the libraries' folder of an installation. Open MPI's own plug-ins
+  // look for its symbols among those of the process, so they must be seen by all.
   for (const char* place : {"snare_mpi.so", "../" SNARE_LIBDIR "/snare/snare_mpi.so"}) {
     const std::filesystem::path file = here / place;
     if (!std::filesystem::exists(file)) continue;

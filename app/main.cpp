@@ -131,7 +131,8 @@ ExitStatus guarded(const CommonOptions& options, const char* schema, const Run& 
   }
 }
 
-/// Words of the command line that are none of ours, with the nearest one: the library says only that they were not expected.
+/// Words of the command line that are none of ours, with the nearest one: the library says only that they
+/// were not expected.
 void check_words(const CLI::App& app, int argc, char** argv) {
   const CLI::App* verb = &app;
   const auto refuse = [&verb, &app](const char* kind, const std::string& word,
@@ -302,8 +303,8 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
 #ifdef __GLIBC__
-  // Blocks of a megabyte go back to the system when they are freed. glibc raises that limit with every block by itself, and curves of
-  // many readings would leave holes.
+  // Blocks of a megabyte go back to the system when they are freed. glibc raises that limit with every block
+  // by itself, and curves of many readings would leave holes.
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
   snare::app::open_standard_streams();

@@ -13,7 +13,8 @@
 #include <string_view>
 #include <utility>
 
-// What the structures consist of. A size that no longer fits says that a member came or went: it belongs here too.
+// What the structures consist of. A size that no longer fits says that a member came or went: it belongs here
+// too.
 namespace snare::multibody {
 void fields(auto& a, RigidBodyState& s) {
   a(s.position)(s.orientation.coeffs())(s.velocity)(s.spin);

@@ -18,8 +18,8 @@ struct MotionProgress {
   std::optional<coupling::MotionState> state;   ///< of the motion at hand; none before its first checkpoint
 };
 
-/// Writes a checkpoint; the file is either the old one or the new one at any time. `input`: what the progress belongs to.
-/// A failure of the system throws std::system_error.
+/// Writes a checkpoint; the file is either the old one or the new one at any time. `input`: what the progress
+/// belongs to. A failure of the system throws std::system_error.
 void write_motion_checkpoint(const std::filesystem::path& file, const std::string& input,
                              MotionProgress& progress);
 

@@ -107,7 +107,8 @@ std::vector<Prediction> curves_of(const Experiment& experiment,
   return result;
 }
 
-/// The experiment with its published fits taken to reach to `to` [mm], one a series, and to rest on `readings` each, evenly spread.
+/// The experiment with its published fits taken to reach to `to` [mm], one a series, and to rest on
+/// `readings` each, evenly spread.
 Experiment with_ranges(Experiment experiment, const std::vector<double>& to_mm, int readings) {
   for (std::size_t k = 0; k < experiment.series.size(); ++k) {
     Series& s = experiment.series[k];
@@ -135,7 +136,8 @@ Trace fit_of(const Experiment& experiment, const std::vector<std::string>& free,
   return identification::trace(experiment, options);
 }
 
-/// The published fits against one wire whose numbers are fitted to them, from these settings; no replicates: no bootstrap.
+/// The published fits against one wire whose numbers are fitted to them, from these settings; no replicates:
+/// no bootstrap.
 identification::SummaryStatistics refitted(const Experiment& experiment,
                                            const std::vector<identification::Setting>& start,
                                            std::size_t free, int replicates) {
@@ -166,8 +168,8 @@ std::map<int, identification::SummaryStatistics> by_digits(const Experiment& exp
   return result;
 }
 
-/// How the published fits may have come about: the stored map that belongs to them, else a coarse one, which takes up to a minute; null
-/// where there are no published fits, or the run was interrupted.
+/// How the published fits may have come about: the stored map that belongs to them, else a coarse one, which
+/// takes up to a minute; null where there are no published fits, or the run was interrupted.
 std::shared_ptr<const nlohmann::json> published_map_of(const Experiment& experiment, const Progress& progress,
                                                        Console& console) {
   if (!std::ranges::all_of(experiment.series, [](const Series& s) { return s.law.has_value(); }))
@@ -247,7 +249,8 @@ ReproducedModel model_of(const Experiment& experiment, const Trace& trace, const
   return model;
 }
 
-/// One row a position: the rms distance of each model from the published curve or the readings, and the published scatter.
+/// One row a position: the rms distance of each model from the published curve or the readings, and the
+/// published scatter.
 std::string error_table(const Reproduction& result) {
   std::vector<std::string> rows{fmt::format("{:<22}", "rms distance [N]")};
   for (const ReproducedModel& model : result.models) rows[0] += fmt::format("{:>14}", model.name);

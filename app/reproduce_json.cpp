@@ -104,7 +104,8 @@ json comparison_json(const identification::FitComparison& c) {
   return result;
 }
 
-/// How the published fits may have come about; the map of every range and number of readings stays in its file.
+/// How the published fits may have come about; the map of every range and number of readings stays in its
+/// file.
 void add_map(const Reproduction& reproduction, json& result) {
   result["published"] = nullptr;
   result["leading"] = nullptr;

@@ -15,7 +15,8 @@ void tell(std::string_view text) noexcept {
 }
 
 void open_standard_streams() noexcept {
-  // The lowest free descriptor is given out: in ascending order each is its own. What is written to the second fails, as it would.
+  // The lowest free descriptor is given out: in ascending order each is its own. What is written to the
+  // second fails, as it would.
   for (const auto& [stream, mode] :
        {std::pair{STDIN_FILENO, O_RDWR}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_RDWR}}) {
     if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF) [[maybe_unused]]

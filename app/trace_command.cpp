@@ -55,8 +55,8 @@ std::string kept_words(const Trace& trace) {
 using Write = void (*)(const identification::Experiment& experiment, const Trace& trace,
                        const CommonOptions& options);
 
-/// The trace of an experiment, written by `write`, also where it is a part that an interruption leaves. What stops it is told to the
-/// console.
+/// The trace of an experiment, written by `write`, also where it is a part that an interruption leaves. What
+/// stops it is told to the console.
 Trace trace_and_write(const identification::Experiment& experiment, identification::TraceOptions tracing,
                       const CommonOptions& options, const char* schema, Write write, Console& console) {
   tracing.progress = [&console](const std::string& stage) {

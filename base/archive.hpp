@@ -13,13 +13,14 @@
 
 namespace snare::base {
 
-/// FNV-1a of a text, 64 bits (Fowler, Noll, Vo): tells whether something has changed; no protection against malice.
+/// FNV-1a of a text, 64 bits (Fowler, Noll, Vo): tells whether something has changed; no protection against
+/// malice.
 [[nodiscard]] std::uint64_t fingerprint(std::string_view text) noexcept;
 
 /// Bytes of values in the order in which they are given, numbers bit by bit in this machine's order.
 ///
-/// What a structure consists of is said once, in a function template `fields(archive, structure)` that hands its members to
-/// the archive, for writing and for reading alike.
+/// What a structure consists of is said once, in a function template `fields(archive, structure)` that hands
+/// its members to the archive, for writing and for reading alike.
 class ByteWriter {
  public:
   template <class Value>
@@ -63,7 +64,8 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads what a ByteWriter has written. Throws std::runtime_error when the bytes end early or a size cannot be.
+/// Reads what a ByteWriter has written. Throws std::runtime_error when the bytes end early or a size cannot
+/// be.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
@@ -106,7 +108,8 @@ class ByteReader {
     return *this;
   }
 
-  /// Whether everything has been read: what remains after the last value is a fault of the reader's or of the bytes.
+  /// Whether everything has been read: what remains after the last value is a fault of the reader's or of the
+  /// bytes.
   [[nodiscard]] bool at_end() const noexcept { return bytes_.empty(); }
 
  private:

@@ -171,7 +171,8 @@ class CsvParser {
     stopped_ = stopped_ || !problems_.empty();  // what follows cannot be told apart
   }
 
-  /// Whether the line below the header has units in the place of numbers; they are compared with what is asked.
+  /// Whether the line below the header has units in the place of numbers; they are compared with what is
+  /// asked.
   bool units(std::string_view text) {
     const std::vector<std::string> cells = cells_of(text, header_->separator);
     if (cells.size() < slots_.size()) return false;
@@ -222,7 +223,8 @@ class CsvParser {
     ++table_.rows;
   }
 
-  /// The digits with a decimal point, of a cell that has a comma; empty, after its report, where it cannot be read.
+  /// The digits with a decimal point, of a cell that has a comma; empty, after its report, where it cannot be
+  /// read.
   std::string_view with_point(std::string_view cell, const CsvColumn& column) {
     const bool other = cell.find('.') != std::string_view::npos ||
                        cell.find(',', cell.find(',') + 1) != std::string_view::npos;
@@ -293,8 +295,8 @@ class CsvParser {
   bool stopped_ = false;
 };
 
-/// Feeds the complete lines of `text`, which end in CR, LF or both; `last`: what follows the last of them is a line as well. Returns
-/// how many bytes they had.
+/// Feeds the complete lines of `text`, which end in CR, LF or both; `last`: what follows the last of them is
+/// a line as well. Returns how many bytes they had.
 std::size_t feed_lines(CsvParser& parser, std::string_view text, bool last) {
   const bool ascii = is_ascii(text);
   std::size_t at = 0;

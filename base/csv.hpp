@@ -21,13 +21,15 @@ struct CsvTable {
 
 /// Reads the asked columns of a CSV file of any length in one pass and with a buffer of about 1 MiB.
 ///
-/// The first line that names all required columns is the header; lines above it (titles of a testing machine, "sep=;") are
-/// passed over. Cells are separated by commas, semicolons, tabs or blanks, as the header is; they may have blanks around them
-/// and stand in double quotes (no line breaks inside). The line below the header may give units. `#` starts a comment, on its own
-/// line or after the cells. Blank lines, rows of empty cells, empty cells after the last column, a byte order mark and line ends of CR,
-/// LF or CRLF are accepted; the text must be UTF-8. Columns that nobody asked for are not looked at; one may be asked for several
-/// times. Numbers are finite, with a decimal point, or all with a decimal comma that cannot be taken for a separator of
-/// thousands. Throws InputError (file, line, column, text, what is allowed) with at most csv_problem_limit problems.
+/// The first line that names all required columns is the header; lines above it (titles of a testing machine,
+/// "sep=;") are passed over. Cells are separated by commas, semicolons, tabs or blanks, as the header is;
+/// they may have blanks around them and stand in double quotes (no line breaks inside). The line below the
+/// header may give units. `#` starts a comment, on its own line or after the cells. Blank lines, rows of
+/// empty cells, empty cells after the last column, a byte order mark and line ends of CR, LF or CRLF are
+/// accepted; the text must be UTF-8. Columns that nobody asked for are not looked at; one may be asked for
+/// several times. Numbers are finite, with a decimal point, or all with a decimal comma that cannot be taken
+/// for a separator of thousands. Throws InputError (file, line, column, text, what is allowed) with at most
+/// csv_problem_limit problems.
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path& path, const std::vector<CsvColumn>& columns);
 
 /// The same from text in memory; `name` stands for the file in messages.
@@ -53,7 +55,8 @@ class CsvWriter {
   void row(std::initializer_list<CsvCell> cells) { row(std::vector<CsvCell>(cells)); }
   void row(const std::vector<CsvCell>& cells);
 
-  /// Waits until all rows are on the disk and gives the file its name. To be called once, no row after it; throws std::system_error.
+  /// Waits until all rows are on the disk and gives the file its name. To be called once, no row after it;
+  /// throws std::system_error.
   void commit();
 
  private:

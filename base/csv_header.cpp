@@ -73,8 +73,8 @@ struct FoundColumn {
   std::optional<NamedUnit> unit;
 };
 
-/// How near a column is to the one that is wanted: 3 the same name in other letters or with another unit, 2 a word or a unit of
-/// the same quantity, 1 a slip of the pen, 0 not at all.
+/// How near a column is to the one that is wanted: 3 the same name in other letters or with another unit, 2 a
+/// word or a unit of the same quantity, 1 a slip of the pen, 0 not at all.
 int nearness(const FoundColumn& found, const CsvColumn& wanted) {
   const std::string& meaning = wanted.meaning.empty() ? wanted.name : wanted.meaning;
   const std::string stem = lower(without_unit(meaning));
@@ -143,7 +143,8 @@ std::string missing_column(const std::vector<FoundColumn>& there, const FoundCol
   return near == nullptr ? text : text + "; the nearest is " + toml_text(near->name);
 }
 
-/// The line that is most likely to be the header: the most columns that are near a wanted one, then the most cells.
+/// The line that is most likely to be the header: the most columns that are near a wanted one, then the most
+/// cells.
 struct Likeliest {
   int line = 0;
   std::vector<FoundColumn> columns = {};

@@ -59,7 +59,8 @@ std::size_t utf8_length(std::string_view text, std::size_t at) noexcept {
   return 0;
 }
 
-/// Temporary names of the files that are being written, for a process that ends without leaving its functions.
+/// Temporary names of the files that are being written, for a process that ends without leaving its
+/// functions.
 struct Unfinished {
   std::mutex mutex;
   std::set<std::string> names;
@@ -82,8 +83,8 @@ pid_t process_of(std::string_view name) {
   return std::from_chars(name.data() + dot + 1, end, process).ptr == end ? process : 0;
 }
 
-/// Removes what killed processes have left unfinished in a folder: their process is gone and nobody holds the file. Once a process
-/// and folder.
+/// Removes what killed processes have left unfinished in a folder: their process is gone and nobody holds the
+/// file. Once a process and folder.
 void remove_abandoned_files(const std::filesystem::path& folder) {
   static std::mutex mutex;
   static std::set<std::filesystem::path> seen;
@@ -196,8 +197,8 @@ void AtomicFile::write(std::string_view text) {
     fail(errno, path_, "cannot be written");
 }
 
-// Its content is on the disk before its name is: after a loss of power, too, the name stands for a whole file. Where a file
-// system cannot say so (EINVAL, ENOTSUP) there is nothing to wait for.
+// Its content is on the disk before its name is: after a loss of power, too, the name stands for a whole
+// file. Where a file system cannot say so (EINVAL, ENOTSUP) there is nothing to wait for.
 void AtomicFile::commit() {
   assert(handle_ && "commit twice");
   if (std::fflush(handle_.get()) != 0) fail(errno, path_, "cannot be written");

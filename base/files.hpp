@@ -40,9 +40,10 @@ struct InputFile {
 
 /// A file that appears under its name when it is complete and not before.
 ///
-/// Writes go to a temporary name in the same folder; `commit()` waits until they are on the disk and renames it. Destroyed without a commit, it
-/// leaves nothing behind and what stood under the name before stays. Missing parent folders are created.
-/// Every failure of the system throws std::system_error that names the path.
+/// Writes go to a temporary name in the same folder; `commit()` waits until they are on the disk and renames
+/// it. Destroyed without a commit, it leaves nothing behind and what stood under the name before stays.
+/// Missing parent folders are created. Every failure of the system throws std::system_error that names the
+/// path.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);
@@ -52,8 +53,8 @@ class AtomicFile {
 
   /// Appends bytes to the temporary file.
   void write(std::string_view text);
-  /// Where it is until then, for a library that opens files by name. It may empty this one and write it, must not put another in its
-  /// place, and must have closed it before the commit.
+  /// Where it is until then, for a library that opens files by name. It may empty this one and write it, must
+  /// not put another in its place, and must have closed it before the commit.
   [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
   /// To be called once; no write after it.
   void commit();
@@ -67,8 +68,8 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Removes the temporary files of AtomicFiles that are not committed: for a process that is about to end without leaving its
-/// functions. What they hold must not be written on.
+/// Removes the temporary files of AtomicFiles that are not committed: for a process that is about to end
+/// without leaving its functions. What they hold must not be written on.
 void remove_unfinished_files() noexcept;
 
 /// Writes `text` under `path` by way of AtomicFile.

@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 thread_local std::shared_ptr<Inputs> of_thread;
 
-/// The entry of a folder that a name stands for: links in the folder's own path are followed, a link of this name is not.
+/// The entry of a folder that a name stands for: links in the folder's own path are followed, a link of this
+/// name is not.
 fs::path entry_of(const fs::path& path) {
   std::error_code code;
   const fs::path absolute = fs::absolute(path, code);

@@ -20,12 +20,12 @@ class Inputs {
   };
   /// All that were read, by absolute path.
   [[nodiscard]] std::vector<File> files() const;
-  /// Content of a file, by `read` where it is asked for first. Throws InputError where it has more than `limit` bytes, and what `read`
-  /// throws.
+  /// Content of a file, by `read` where it is asked for first. Throws InputError where it has more than
+  /// `limit` bytes, and what `read` throws.
   [[nodiscard]] std::shared_ptr<const std::string> text(const std::filesystem::path& path, std::size_t limit,
                                                         const std::function<std::string()>& read);
-  /// Throws InputError where a file of this name would take the place of one that was read. key: argument that names the folder, for the
-  /// message.
+  /// Throws InputError where a file of this name would take the place of one that was read. key: argument
+  /// that names the folder, for the message.
   void protect(const std::filesystem::path& output, const std::string& key = "--out") const;
 
  private:
@@ -40,7 +40,8 @@ class Inputs {
 /// The inputs of this thread's work; none outside of every InputScope.
 [[nodiscard]] std::shared_ptr<Inputs> current_inputs() noexcept;
 
-/// For as long as it lives this thread's work reads these inputs. Threads that share work take the inputs of the one that began it.
+/// For as long as it lives this thread's work reads these inputs. Threads that share work take the inputs of
+/// the one that began it.
 class InputScope {
  public:
   explicit InputScope(std::shared_ptr<Inputs> inputs);

@@ -45,11 +45,12 @@ class TomlDocument {
   /// The table of all keys at the top of the file: with it the asking begins.
   [[nodiscard]] TomlTable root();
 
-  /// Adds a problem found by other means, in a file that this one names for instance. The same problem is kept once.
+  /// Adds a problem found by other means, in a file that this one names for instance. The same problem is
+  /// kept once.
   void add(InputProblem problem);
 
-  /// Of what the file says after its overrides; comments and the order of keys make no difference, nor does the value of `without`, a key
-  /// of a table of the root: "solver.least_advance_s".
+  /// Of what the file says after its overrides; comments and the order of keys make no difference, nor does
+  /// the value of `without`, a key of a table of the root: "solver.least_advance_s".
   [[nodiscard]] std::string canonical(std::string_view without = {}) const;
 
   /// Throws InputError if anything was wrong. Problems of the file come first, by line, then those of
@@ -99,7 +100,8 @@ class TomlTable {
   /// Has the key, whatever its value. Makes the key a known one.
   [[nodiscard]] bool has(std::string_view key) const;
 
-  /// A number in `range`, both in the file's unit; `unit`: SI units in one of these (1e-3 for mm). The result is in SI, NaN after a problem.
+  /// A number in `range`, both in the file's unit; `unit`: SI units in one of these (1e-3 for mm). The result
+  /// is in SI, NaN after a problem.
   [[nodiscard]] double number(std::string_view key, Range range, double unit = 1.0) const;
   /// The same, or `otherwise` (in SI) where the key is absent.
   [[nodiscard]] double number_or(std::string_view key, double otherwise, Range range,
@@ -117,7 +119,8 @@ class TomlTable {
   [[nodiscard]] std::string text(std::string_view key) const;
   /// The same, or `otherwise` where the key is absent.
   [[nodiscard]] std::string text_or(std::string_view key, std::string otherwise) const;
-  /// An array of numbers, `least` to `most` of them; empty after a problem. Range in the file's unit, result in SI, see `number`.
+  /// An array of numbers, `least` to `most` of them; empty after a problem. Range in the file's unit, result
+  /// in SI, see `number`.
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t least, std::size_t most,
                                             Range range, double unit = 1.0) const;
   /// An array of `count` numbers, or one number for all of them; empty after a problem. In SI, see `number`.
@@ -182,7 +185,8 @@ class TomlTable {
 /// Asks for the line `schema = "..."` with which every file says what it is; anything else is reported.
 void require_schema(const TomlTable& root, std::string_view schema);
 
-/// Runs the reader of another file that a document names; what is wrong there goes to the document, and nothing comes back.
+/// Runs the reader of another file that a document names; what is wrong there goes to the document, and
+/// nothing comes back.
 template <class Read>
 auto read_beside(TomlDocument& document, const Read& read) -> std::optional<decltype(read())> {
   try {
@@ -197,7 +201,8 @@ auto read_beside(TomlDocument& document, const Read& read) -> std::optional<decl
 /// neighbours), or empty when none is near: more than a third of the word would have to change.
 [[nodiscard]] std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates);
 
-/// What follows "must be one of these" in a message: "; did you mean X?", or ": " and all of them when none is near.
+/// What follows "must be one of these" in a message: "; did you mean X?", or ": " and all of them when none
+/// is near.
 [[nodiscard]] std::string nearest_or_all(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace snare::base

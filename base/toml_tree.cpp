@@ -119,8 +119,10 @@ void skip_string(std::string_view text, std::size_t& i, int& line) {
 /// - keys with more than deepest_dotted_key dots: tables are read and destroyed recursively, so a file of
 ///   nothing but dots could exhaust the stack;
 /// - characters outside ASCII that stand neither in a string nor in a comment, which TOML forbids: toml++ 3.3
-///   (is_non_ascii_horizontal_whitespace) runs into undefined behaviour. As it reads a bare value up to the next
-///   blank, quotes and brackets may not follow a word directly (TOML has this in keys like a."b" only), nor one
+///   (is_non_ascii_horizontal_whitespace) runs into undefined behaviour. As it reads a bare value up to the
+///     next
+///   blank, quotes and brackets may not follow a word directly (TOML has this in keys like a."b" only),
+///     nor one
 ///   '=' another.
 void check_outside_strings(const std::string& file, std::string_view text) {
   constexpr std::string_view openers = "\"'[{";

@@ -64,7 +64,8 @@ struct TomlEntry {
 /// is added to `problems`.
 void apply_override(TomlNode& root, const Override& change, std::vector<InputProblem>& problems);
 
-/// A text that is the same for trees of the same keys and values: keys in order, numbers to the last bit, no comments.
+/// A text that is the same for trees of the same keys and values: keys in order, numbers to the last bit, no
+/// comments.
 [[nodiscard]] std::string canonical_text(const TomlNode& node);
 
 }  // namespace snare::base

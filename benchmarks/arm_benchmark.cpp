@@ -1,4 +1,5 @@
-// Rigid dynamics of the seven-joint arm by us, orocos-KDL and DART in one run, and the elastic arm against the clock.
+// Rigid dynamics of the seven-joint arm by us, orocos-KDL and DART in one run, and the elastic arm against
+// the clock.
 
 #include "multibody/arm/arm_file.hpp"
 #include "multibody/dynamics.hpp"
@@ -27,7 +28,8 @@ std::filesystem::path arms() {
   return std::filesystem::path(SNARE_BENCHMARK_DATA) / "arms";
 }
 
-/// The arm with a hundred states that are run through in turn, so that no branch predictor learns one of them.
+/// The arm with a hundred states that are run through in turn, so that no branch predictor learns one of
+/// them.
 struct Case {
   multibody::ArmDescription arm = multibody::read_arm(arms() / "ssrms_like.toml");
   std::vector<Eigen::VectorXd> q, v, a;

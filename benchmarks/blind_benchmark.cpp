@@ -1,15 +1,17 @@
 // How often the tracing names the right class: blind sets of the continuous wire with an effect that the
 // declared model lacks, every effect, several seeds and sizes. Prints one line a set and writes the confusion
 // matrix as JSON.
-//   blind_benchmark [--seeds N] [--first SEED] [--sizes 5,10,30] [--effects a,b] [--design NAME] [--intervals]
+//   blind_benchmark [--seeds N] [--first SEED] [--sizes 5,10,30] [--effects a,b] [--design NAME]
+//     [--intervals]
 //   [--minutes M] [--out FILE] [--sets FILE] [--require]
 // --effects a+b puts two in at once; --pairs takes a list of such pairs.
 // --sets keeps every set's outcome, one line of JSON each; a run that finds the file goes on where it ended.
 // It belongs to one build: another one starts with a new file. --minutes ends a run after a set.
-// --design geometry: length off by 0.1 mm and freed, every position off by 0.02 mm (standard deviations); replicates and
-// dense: three pushes, three records each that deviate smoothly, noise not declared, 20 and 40 readings a leg of the same
-// wire and noise.
-// Shares come with the lower end of their one-sided 95 % interval (Clopper and Pearson 1934), rates of errors with the upper.
+// --design geometry: length off by 0.1 mm and freed, every position off by 0.02 mm (standard deviations);
+// replicates and
+// dense: three pushes, three records each that deviate smoothly, noise not declared, 20 and 40 readings a leg
+// of the same wire and noise. Shares come with the lower end of their one-sided 95 % interval (Clopper and
+// Pearson 1934), rates of errors with the upper.
 
 #include "base/files.hpp"
 #include "identification/tracing/trace.hpp"
@@ -51,7 +53,8 @@ validation::BlindDesign design_of(const std::string& name) {
   return design;
 }
 
-/// Where the chance of at least `k` of n, or of at most `k`, is 5 %: bounds of a share that was seen as k of n.
+/// Where the chance of at least `k` of n, or of at most `k`, is 5 %: bounds of a share that was seen as k of
+/// n.
 double lower_bound(double k, double n) {
   return k <= 0.0 ? 0.0 : boost::math::binomial_distribution<>::find_lower_bound_on_p(n, k, 0.05);
 }
@@ -456,8 +459,9 @@ int main(int argc, char** argv) try {
   if (!out.empty()) base::write_text(out, result.dump(1) + "\n");
   fmt::print("{}\n", result.dump(1));
   if (!required) return 0;
-  // The fewest that a run of some tens of sets may have: two errors in a hundred, one too many in a small run. The few sets outside
-  // the catalogue fail when their 95 % upper bound excludes four right answers of five, the share in the stored sets.
+  // The fewest that a run of some tens of sets may have: two errors in a hundred, one too many in a small
+  // run. The few sets outside the catalogue fail when their 95 % upper bound excludes four right answers of
+  // five, the share in the stored sets.
   const nlohmann::json& large = result["sizes"][fmt::format("{:g}", sizes.back())];
   const double outside = large.value("outside_sets", 0.0);
   const double named = std::round(outside * large.value("outside_right_channel_alone_or_in_the_class", 1.0));

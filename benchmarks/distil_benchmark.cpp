@@ -103,7 +103,8 @@ void DefaultTable(benchmark::State& state) {
   omp_set_num_threads(omp_get_num_procs());
 }
 
-/// Two tables at once, each on one thread: what two cores of this machine can do for work that shares nothing.
+/// Two tables at once, each on one thread: what two cores of this machine can do for work that shares
+/// nothing.
 void TwoDefaultTables(benchmark::State& state) {
   omp_set_max_active_levels(1);
   for ([[maybe_unused]] auto _ : state) {

@@ -1,4 +1,5 @@
-// How often the intervals of sweeps contain the truth: subset simulations, shares of hits and Sobol indices of functions with closed forms.
+// How often the intervals of sweeps contain the truth: subset simulations, shares of hits and Sobol indices
+// of functions with closed forms.
 //   interval_benchmark [--studies N] [--first SEED] [--out FILE]
 // Intervals are said to be of 95 %; those of shares hold at least that often.
 

@@ -13,7 +13,8 @@
 #include <string>
 #include <vector>
 
-/// Functions with closed-form probabilities and Sobol indices, and how often the intervals of studies of them hold.
+/// Functions with closed-form probabilities and Sobol indices, and how often the intervals of studies of them
+/// hold.
 namespace snare::benchmarks {
 
 /// An event margin >= 0 of independent standard normal scores.
@@ -24,7 +25,8 @@ struct LimitFunction {
   std::function<double(const std::vector<double>&)> margin;
 };
 
-/// Planes in 2 and 10 dimensions, the outside of a sphere in 10, two opposite planes in 5, each with this probability.
+/// Planes in 2 and 10 dimensions, the outside of a sphere in 10, two opposite planes in 5, each with this
+/// probability.
 inline std::vector<LimitFunction> limit_functions(double probability) {
   const double plane = -study::normal_quantile(probability);
   const double two_planes = -study::normal_quantile(0.5 * probability);

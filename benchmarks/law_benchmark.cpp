@@ -1,5 +1,5 @@
-// The force of a law.json at points of a file, for benchmarks/python_overhead.py: travel, then position, then slack of all points as
-// doubles [m]. Prints the time of the loop and the sum of the forces.
+// The force of a law.json at points of a file, for benchmarks/python_overhead.py: travel, then position, then
+// slack of all points as doubles [m]. Prints the time of the loop and the sum of the forces.
 #include "scenario/distilled_law.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// One linear system of the push by every solver at hand. The yardstick is a bare klu_refactor + klu_solve of the
-// whole bordered matrix, in its smallest pattern.
+// One linear system of the push by every solver at hand. The yardstick is a bare klu_refactor + klu_solve of
+// the whole bordered matrix, in its smallest pattern.
 
 #include "base/units.hpp"
 #include "benchmarks/declared_push.hpp"

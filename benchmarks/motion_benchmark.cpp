@@ -1,6 +1,6 @@
-// A body of 8.9 kg at 0.1 m/s meets the declared wire: the head-on case beside the static curve, at equal error; real-time
-// factor with 60 elements, where the time goes, error against cost, time a step against the number of elements, ten runs at
-// once on one and two threads.
+// A body of 8.9 kg at 0.1 m/s meets the declared wire: the head-on case beside the static curve, at equal
+// error; real-time factor with 60 elements, where the time goes, error against cost, time a step against the
+// number of elements, ten runs at once on one and two threads.
 
 #include "base/units.hpp"
 #include "benchmarks/declared_push.hpp"
@@ -32,7 +32,8 @@ coupling::Motion impact(int elements, wire::Formulation formulation = wire::Form
   const wire::WireSpecification w = validation::declared_specification();
   wire::RodInMotion rod = wire::rod_in_motion(w, span, elements);
   rod.formulation = formulation;
-  // A damping ratio of 0.7 % at the first frequency of the straight wire (assumed; steel wires show 0.1 to 1 %).
+  // A damping ratio of 0.7 % at the first frequency of the straight wire (assumed; steel wires show 0.1 to 1
+  // %).
   rod.damping.bending_time = rod.damping.axial_time = 1e-5;
   coupling::Motion motion;
   motion.wires.push_back({"wire", rod, coupling::resting_wire(rod), {}});
@@ -98,8 +99,8 @@ constexpr double mass = 8.9;   // [kg]
 constexpr double speed = 0.1;  // [m/s]
 constexpr double probe = 6.0 * mm;
 
-/// Case H: the declared wire, at rest in its buckled shape, is met head-on in its middle by a free body with a cylinder as
-/// its probe, without friction.
+/// Case H: the declared wire, at rest in its buckled shape, is met head-on in its middle by a free body with
+/// a cylinder as its probe, without friction.
 coupling::Motion case_h_motion(const wire::RodInMotion& rod) {
   coupling::Motion motion;
   motion.wires.push_back({"wire", rod, coupling::resting_wire(rod), {}});
@@ -118,8 +119,9 @@ coupling::Motion case_h_motion(const wire::RodInMotion& rod) {
   return motion;
 }
 
-/// Peak force [N] on a body so slow that the wire is in equilibrium but for its damping all the time: m x'' = -(F + tau x' G) with
-/// the static curve F(x) and the rate form G(x) of its shapes, theory.md (W.14), by the midpoint rule.
+/// Peak force [N] on a body so slow that the wire is in equilibrium but for its damping all the time: m x'' =
+/// -(F + tau x' G) with the static curve F(x) and the rate form G(x) of its shapes, theory.md (W.14), by the
+/// midpoint rule.
 double quasi_static_peak(double tau) {
   constexpr int points = 400;
   constexpr double spacing = 1.2 * mm / points;
@@ -156,8 +158,8 @@ wire::Formulation formulation_of(const benchmark::State& state) {
   return state.range(1) == 1 ? wire::Formulation::higher_order : wire::Formulation::vertices;
 }
 
-// In turn: the static curve of 20 points from the straight wire, and the head-on case from the buckled one to 0.3 s, of either
-// formulation and without inertia. The impulse is that of two codes that agree to 6e-5.
+// In turn: the static curve of 20 points from the straight wire, and the head-on case from the buckled one to
+// 0.3 s, of either formulation and without inertia. The impulse is that of two codes that agree to 6e-5.
 void case_h(benchmark::State& state) {
   constexpr double impulse = 1.7784;  // [N s]
   constexpr double tau = 1e-5;        // of the wire's damping [s]
@@ -210,8 +212,9 @@ BENCHMARK(one_wire)
     ->Args({60, 1})
     ->Unit(benchmark::kMillisecond);
 
-/// Three wires that are closed on a shaft: chords at 120 degrees from each other, 3 mm apart along it, each bulging past the
-/// shaft's middle to 0.1 mm from its surface; a body of 8.9 kg with friction swings between them.
+/// Three wires that are closed on a shaft: chords at 120 degrees from each other, 3 mm apart along it, each
+/// bulging past the shaft's middle to 0.1 mm from its surface; a body of 8.9 kg with friction swings between
+/// them.
 coupling::Motion held_shaft(int elements, bool quasi_static) {
   const wire::WireSpecification w = validation::declared_specification();
   coupling::Motion motion;
@@ -304,8 +307,8 @@ BENCHMARK(elements)
     ->Unit(benchmark::kMillisecond)
     ->Complexity(benchmark::oN);
 
-// What finding touches costs a step beside the whole step, far from the wire and in contact: share of the run. The pin is a ball or its
-// tessellation in 2400 triangles.
+// What finding touches costs a step beside the whole step, far from the wire and in contact: share of the
+// run. The pin is a ball or its tessellation in 2400 triangles.
 void search(benchmark::State& state) {
   const int elements_of_wire = static_cast<int>(state.range(0));
   const bool mesh = state.range(1) != 0;
@@ -325,7 +328,8 @@ BENCHMARK(search)
     ->ArgsProduct({{1000}, {0, 1}, {0, 1}})
     ->Unit(benchmark::kMillisecond);
 
-// For comparison: the distance of all 1001 vertices, which a search without bounds asks for at least once a step.
+// For comparison: the distance of all 1001 vertices, which a search without bounds asks for at least once a
+// step.
 void scan_all_vertices(benchmark::State& state) {
   const bool mesh = state.range(0) != 0;
   const coupling::Motion motion = impact(1000);
@@ -340,7 +344,8 @@ void scan_all_vertices(benchmark::State& state) {
 }
 BENCHMARK(scan_all_vertices)->ArgName("mesh")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
-// Ten independent runs on one thread and on two in turn, 25 times: the median time of the first over that of the second.
+// Ten independent runs on one thread and on two in turn, 25 times: the median time of the first over that of
+// the second.
 void ten_runs(benchmark::State& state) {
   const coupling::Motion motion = impact(60);
   coupling::MotionOptions options;

@@ -1,14 +1,16 @@
-// How often the tracing names a culprit where there is none: readings of the continuous wire by collocation, stiffnesses
-// off the declared ones by a tenth, with noise of several kinds that is not declared. One line a set and a summary as
-// JSON.
-//   null_benchmark [--seeds N] [--first SEED] [--readings 6,30,500,3000] [--kinds white,smooth,replicates] [--out FILE]
+// How often the tracing names a culprit where there is none: readings of the continuous wire by collocation,
+// stiffnesses off the declared ones by a tenth, with noise of several kinds that is not declared. One line a
+// set and a summary as JSON.
+//   null_benchmark [--seeds N] [--first SEED] [--readings 6,30,500,3000] [--kinds white,smooth,replicates]
+//     [--out FILE]
 //   [--sets FILE] [--minutes M]
-// --sets keeps every set's outcome, one line of JSON each; a run of the same build that finds the file goes on where it
-// ended. --minutes ends a run after a set. Rates of errors come with the upper end of their one-sided 95 % interval.
-// Noise, as shares of the largest force: white 1 %; smooth 0.7 % (an Ornstein-Uhlenbeck process of a quarter of the
-// travel) and white 0.5 %; replicates: six records to peak travels up to 5 % apart, each with a smooth deviation that
-// goes with the force (3 % of it) and white 0.5 %. Readings are those of a record; six of them are one record, else two
-// positions are pushed, of replicates one.
+// --sets keeps every set's outcome, one line of JSON each; a run of the same build that finds the file goes
+// on where it ended. --minutes ends a run after a set. Rates of errors come with the upper end of their
+// one-sided 95 % interval. Noise, as shares of the largest force: white 1 %; smooth 0.7 % (an
+// Ornstein-Uhlenbeck process of a quarter of the travel) and white 0.5 %; replicates: six records to peak
+// travels up to 5 % apart, each with a smooth deviation that goes with the force (3 % of it) and white 0.5 %.
+// Readings are those of a record; six of them are one record, else two positions are pushed, of replicates
+// one.
 
 #include "base/files.hpp"
 #include "base/units.hpp"

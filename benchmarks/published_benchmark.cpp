@@ -1,10 +1,12 @@
-// Whether the P of published fits is what it says: readings of a wire with noise are made up and fitted as a paper
-// does, only the printed numbers are kept, and the wire that made them is judged by its likelihood. Its P must be
-// uniform.
-//   published_benchmark [--sets N] [--readings 6,8,12,20,40] [--sigma N] [--digits D] [--seed S] [--experiment FILE] [--out FILE]
-// The wire is that of the published static tests with its six numbers at values near those that are fitted to them, the
-// fits reach to 4 mm. One line a number of readings, and JSON: `uniform_p` of a Kolmogorov-Smirnov test, the shares of
-// P below 5 and 1 %, and the mean of the estimated variance over the true one before its bias is corrected.
+// Whether the P of published fits is what it says: readings of a wire with noise are made up and fitted as a
+// paper does, only the printed numbers are kept, and the wire that made them is judged by its likelihood. Its
+// P must be uniform.
+//   published_benchmark [--sets N] [--readings 6,8,12,20,40] [--sigma N] [--digits D] [--seed S]
+//     [--experiment FILE] [--out FILE]
+// The wire is that of the published static tests with its six numbers at values near those that are fitted to
+// them, the fits reach to 4 mm. One line a number of readings, and JSON: `uniform_p` of a Kolmogorov-Smirnov
+// test, the shares of P below 5 and 1 %, and the mean of the estimated variance over the true one before its
+// bias is corrected.
 
 #include "base/files.hpp"
 #include "identification/effects/catalogue.hpp"

@@ -1,5 +1,6 @@
-// The probability of every way in which published fits may have come about, over the range and the number of readings that their paper
-// does not print: published_map_benchmark [--experiment FILE] [--only NAME,...] [--coarse] [--out FILE]
+// The probability of every way in which published fits may have come about, over the range and the number of
+// readings that their paper does not print: published_map_benchmark [--experiment FILE] [--only NAME,...]
+// [--coarse] [--out FILE]
 
 #include "base/files.hpp"
 #include "identification/effects/catalogue.hpp"

@@ -1,5 +1,5 @@
-// The 20-point outward curve, error beside time; one equilibrium by our Newton's method and by KINSOL; the cost of a
-// Newton iteration against the number of elements.
+// The 20-point outward curve, error beside time; one equilibrium by our Newton's method and by KINSOL; the
+// cost of a Newton iteration against the number of elements.
 
 #include "base/units.hpp"
 #include "benchmarks/declared_push.hpp"
@@ -44,7 +44,8 @@ void report(benchmark::State& state, const coupling::PushCurve& curve, int meshe
       iterations, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// The whole curve from the straight wire: buckling, first touch, 20 points; three nested meshes, extrapolated.
+/// The whole curve from the straight wire: buckling, first touch, 20 points; three nested meshes,
+/// extrapolated.
 void OutwardCurveExtrapolated(benchmark::State& state) {
   const coupling::PushProblem test = declared_push();
   coupling::PushOptions options;
@@ -87,8 +88,8 @@ void EquilibriumOwnNewton(benchmark::State& state) {
   state.counters["force_N"] = wire.system->pusher_force(point).y();
 }
 
-/// The same step by KINSOL with KLU: analytic Jacobian refilled through its slots, tolerances as in ours; with the
-/// set-up of the solver and the analysis of the pattern in every solution, as `solve_kinsol` does.
+/// The same step by KINSOL with KLU: analytic Jacobian refilled through its slots, tolerances as in ours;
+/// with the set-up of the solver and the analysis of the pattern in every solution, as `solve_kinsol` does.
 void EquilibriumKinsol(benchmark::State& state) {
   PressedWire wire = pressed_wire(static_cast<int>(state.range(0)), 0.75 * mm);
   wire.point.parameter = 0.825 * mm;

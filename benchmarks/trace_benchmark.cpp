@@ -1,4 +1,5 @@
-// A whole trace: six series of 39 readings, load and unload, every effect of the catalogue, and where its time goes.
+// A whole trace: six series of 39 readings, load and unload, every effect of the catalogue, and where its
+// time goes.
 
 #include "identification/effects/catalogue.hpp"
 #include "identification/tracing/trace.hpp"

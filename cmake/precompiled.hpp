@@ -1,5 +1,5 @@
-// What most of our sources include, compiled once (cmake/SnareModule.cmake). No source may rely on it: each includes what it
-// uses and the preset `tidy` builds without.
+// What most of our sources include, compiled once (cmake/SnareModule.cmake). No source may rely on it: each
+// includes what it uses and the preset `tidy` builds without.
 #pragma once
 
 #include <fmt/format.h>

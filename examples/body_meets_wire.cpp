@@ -1,8 +1,8 @@
 // A body meets a taut wire at mid-span, is slowed down, and thrown back.
 //
-// The body of 50 kg moves as on a spring, since the wire's waves run to and fro 140 times meanwhile: k is that of a
-// clamped wire under tension, the contact lasts pi sqrt(m/k), m being the body's mass and a third of the wire's, and the
-// speed is reversed.
+// The body of 50 kg moves as on a spring, since the wire's waves run to and fro 140 times meanwhile: k is
+// that of a clamped wire under tension, the contact lasts pi sqrt(m/k), m being the body's mass and a third
+// of the wire's, and the speed is reversed.
 #include <snare/coupling/contact/tensioned_wire.hpp>
 #include <snare/coupling/dynamics/model/start.hpp>
 #include <snare/coupling/dynamics/run/simulate.hpp>
@@ -39,7 +39,8 @@ int main() {
 
   coupling::MotionOptions options;
   options.duration = 1.3;
-  // The body leaves when the wire's vibration, 6 ms a period, lets it go: it is followed, 0.3 um of 0.6 mm would not do.
+  // The body leaves when the wire's vibration, 6 ms a period, lets it go: it is followed, 0.3 um of 0.6 mm
+  // would not do.
   options.position_tolerance = 1e-8;  // m
   options.velocity_tolerance = 1e-4;  // m/s
   const coupling::MotionResult result = coupling::simulate(motion, options);

@@ -53,7 +53,8 @@ Wrench apply(const ArticulatedInertia& inertia, const Twist& v) {
           inertia.H.transpose() * v.angular + inertia.M * v.linear};
 }
 
-/// The same inertia seen from the parent. After turning, with P = [p]x: H_P = H + P M, I_P = I - H P + P H_P^T.
+/// The same inertia seen from the parent. After turning, with P = [p]x: H_P = H + P M, I_P = I - H P + P
+/// H_P^T.
 ArticulatedInertia to_outer(const ArticulatedInertia& inertia, const Pose& X_PB) {
   const Eigen::Matrix3d& R = X_PB.R;
   const Eigen::Matrix3d P = cross_matrix(X_PB.p);

@@ -89,11 +89,10 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
     if (!wrenches.empty()) d.wrench_W[at(i)] -= X_WB.to_outer(wrenches[at(i)]);
   }
 
-  // Moving joint axis S_j moves all that it carries rigidly, and changes the velocities there by psi' = V_parent x
-  // S_j and
-  // the accelerations by psi'' = A_parent x S_j + V_parent x psi' (+ psi' x V), seen from the bodies. Each column
-  // therefore
-  // needs one wrench at its own body, which is felt by the joints below; the joints above feel their composite bodies'.
+  // Moving joint axis S_j moves all that it carries rigidly, and changes the velocities there by psi' =
+  // V_parent x S_j and the accelerations by psi'' = A_parent x S_j + V_parent x psi' (+ psi' x V), seen from
+  // the bodies. Each column therefore needs one wrench at its own body, which is felt by the joints below;
+  // the joints above feel their composite bodies'.
   d.position.setZero();
   d.velocity.setZero();
   d.mass.setZero();

@@ -13,8 +13,9 @@ namespace snare::multibody {
 struct InverseDynamicsDerivatives {
   explicit InverseDynamicsDerivatives(const Tree& tree);
 
-  Eigen::MatrixXd
-      position;  ///< d tau / d(motion of the coordinates), (nv x nv): along velocities: joints turn and shift in their own frames
+  /// d tau / d(motion of the coordinates), (nv x nv): along velocities: joints turn and shift in their
+  /// own frames
+  Eigen::MatrixXd position;
   Eigen::MatrixXd velocity;  ///< d tau / d v, (nv x nv)
   Eigen::MatrixXd mass;      ///< d tau / d v' = H(q), (nv x nv)
 
@@ -25,8 +26,9 @@ struct InverseDynamicsDerivatives {
   std::vector<Wrench> wrench_W;           ///< through the joints
 };
 
-/// Derivatives of `inverse_dynamics` with wrenches that move with their bodies.                      theory.md (A.8)
-/// Agrees with Singh, Wensing and Echeandia 2022 for joints of one axis; the free joint is derived in theory.md.
+/// Derivatives of `inverse_dynamics` with wrenches that move with their bodies.               theory.md (A.8)
+/// Agrees with Singh, Wensing and Echeandia 2022 for joints of one axis; the free joint is derived in
+/// theory.md.
 /// q: (nq), v and acceleration: (nv), results in SI units.
 const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tree, const Eigen::VectorXd& q,
                                                                  const Eigen::VectorXd& v,
@@ -34,8 +36,8 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
                                                                  BodyWrenches wrenches,
                                                                  InverseDynamicsDerivatives& derivatives);
 
-/// Derivatives of the momentum about the world's origin, in its axes (angular over linear), (6 x nv).    theory.md
-/// (A.8)
+/// Derivatives of the momentum about the world's origin, in its axes (angular over linear), (6 x nv).
+///                                                                                            theory.md (A.8)
 struct MomentumDerivatives {
   Eigen::Matrix<double, 6, Eigen::Dynamic>
       position;  ///< along velocities: joints turn and shift in their own frames

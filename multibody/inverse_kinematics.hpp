@@ -21,18 +21,20 @@ struct Reach {
   int solutions = 0;      ///< different ones found within the limits
   double distance = 0.0;  ///< left at q: of the origins [m]
   double angle = 0.0;     ///< left at q: between the axes [rad]
-  int beyond =
-      -1;  ///< where all solutions lie beyond limits: of the nearest one, index of the joint that is farthest beyond
+  /// where all solutions lie beyond limits: of the nearest one, index of the joint that is farthest
+  /// beyond
+  int beyond = -1;
   double beyond_at = 0.0;  ///< and its coordinate [rad, m]
   [[nodiscard]] bool found() const { return solutions > 0; }
 };
 
-/// The coordinates at which a frame of a tree has the pose X_WF, six joints moving and all other coordinates as in `posture`: of the
-/// solutions within the limits the one nearest to the posture, by the sum of squares of the changes of coordinates [rad, m]. Angles
-/// are taken by whole turns to where they are nearest within the limits.                                theory.md (A.18)
+/// The coordinates at which a frame of a tree has the pose X_WF, six joints moving and all other coordinates
+/// as in `posture`: of the solutions within the limits the one nearest to the posture, by the sum of squares
+/// of the changes of coordinates [rad, m]. Angles
+/// are taken by whole turns to where they are nearest within the limits.                     theory.md (A.18)
 ///
-/// Looks from the posture and from 400 places spread evenly over the joints' ranges (of +-180 deg or 10 m where they have no limits),
-/// the same every time.
+/// Looks from the posture and from 400 places spread evenly over the joints' ranges (of +-180 deg or 10 m
+/// where they have no limits), the same every time.
 [[nodiscard]] Reach reach_pose(const Tree& tree, int frame, const Pose& X_WF, const Eigen::VectorXd& posture,
                                const std::vector<ReachingJoint>& joints);
 

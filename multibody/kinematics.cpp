@@ -10,8 +10,8 @@ namespace {
 
 using base::at;
 
-/// Calls `each(column, S)` with the axis of every velocity that moves the frame's body, as a motion in the world, and
-/// the velocity of the body that carries the axis.
+/// Calls `each(column, S)` with the axis of every velocity that moves the frame's body, as a motion in the
+/// world, and the velocity of the body that carries the axis.
 template <class Each>
 void for_axes(const Tree& tree, const Kinematics& kinematics, int body, const Each& each) {
   for (int i = body; i >= 0; i = tree.body(i).parent) {

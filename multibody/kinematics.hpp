@@ -19,7 +19,7 @@ struct Kinematics {
   std::vector<Twist> V_B;  ///< velocity of each body, in its own frame
 };
 
-/// Adds the velocity of a body against its joint's frame, in its own axes.                              theory.md (A.3)
+/// Adds the velocity of a body against its joint's frame, in its own axes.                    theory.md (A.3)
 /// v: (nv) [rad/s, m/s].
 inline void add_joint_motion(const TreeBody& body, const Eigen::VectorXd& v, Twist& V) {
   switch (body.joint) {
@@ -51,10 +51,12 @@ struct FrameMotion {
 };
 [[nodiscard]] FrameMotion frame_motion(const Tree& tree, const Kinematics& kinematics, int frame);
 
-/// Jacobian J(q) of a frame, (6 x nv): angular velocity over velocity of the origin, in the axes of the world, for
-/// each velocity [-, m].                                                                             theory.md (A.4)
+/// Jacobian J(q) of a frame, (6 x nv): angular velocity over velocity of the origin, in the axes of the
+/// world, for
+/// each velocity [-, m].                                                                      theory.md (A.4)
 [[nodiscard]] Matrix6X frame_jacobian(const Tree& tree, const Kinematics& kinematics, int frame);
-/// J^T F of a wrench about a point p_W [m] of a body, in the axes of the world [N m, N]: added to forces (nv).
+/// J^T F of a wrench about a point p_W [m] of a body, in the axes of the world [N m, N]: added to forces
+/// (nv).
 void add_force(const Tree& tree, const Kinematics& kinematics, int body, const Eigen::Vector3d& p_W,
                const Wrench& F_W, Eigen::Ref<Eigen::VectorXd> forces);
 /// The Jacobian of a point p_W [m] of a body.
@@ -72,7 +74,8 @@ void add_force(const Tree& tree, const Kinematics& kinematics, int body, const E
 /// Centre of mass of all moving bodies in the world [m].
 [[nodiscard]] Eigen::Vector3d centre_of_mass(const Tree& tree, const Kinematics& kinematics);
 
-/// A wrench on a frame, as the wrench on the body that carries it, in the body's frame: what the dynamics take.
+/// A wrench on a frame, as the wrench on the body that carries it, in the body's frame: what the dynamics
+/// take.
 struct BodyWrench {
   int body = -1;
   Wrench F_B;

@@ -19,7 +19,8 @@ Matrix3d rotation(const Vector4d& q) {
 }
 
 Eigen::Matrix<double, 3, 4> rotated_by_quaternion(const Vector4d& q, const Vector3d& a) {
-  // A change dq of a unit quaternion is the rotation vector 4 Q^T dq in B, Q = quaternion_rates(q); Q^T Q = 1/4.
+  // A change dq of a unit quaternion is the rotation vector 4 Q^T dq in B, Q = quaternion_rates(q); Q^T Q =
+  // 1/4.
   const Matrix3d r = rotation(q);
   return -4.0 * r * cross_matrix(a) * quaternion_rates(q).transpose();
 }

@@ -20,8 +20,9 @@ struct RigidBodyState {
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();                   ///< angular velocity in B [rad/s]
 };
 
-/// The first Piola form of the quaternion's rate: q' = 1/2 q (0, w) as a matrix on w, (4 x 3) [-]; q in the order w, x, y, z.
-///                                                                                       theory.md (M.5)
+/// The first Piola form of the quaternion's rate: q' = 1/2 q (0, w) as a matrix on w, (4 x 3) [-]; q in the
+/// order w, x, y, z.
+///                                                                                            theory.md (M.5)
 [[nodiscard]] Eigen::Matrix<double, 4, 3> quaternion_rates(const Eigen::Vector4d& q);
 
 /// The rotation matrix of a quaternion that need not be of unit length, R(q) = rotation of q/|q|.

@@ -12,10 +12,11 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 using numerics::cross_matrix;
 
-/// Spatial motion: angular velocity and the velocity of the body's point that is at the origin.   theory.md (A.1)
+/// Spatial motion: angular velocity and the velocity of the body's point that is at the origin.
+///                                                                                            theory.md (A.1)
 /// Velocities [rad/s, m/s], accelerations [rad/s^2, m/s^2] or joint axes [rad, m per unit of the coordinate].
-/// A spatial acceleration is the rate of the spatial velocity: its linear part is p'' - w x p', Featherstone 2008,
-/// sec. 2.11.
+/// A spatial acceleration is the rate of the spatial velocity: its linear part is p'' - w x p', Featherstone
+/// 2008, sec. 2.11.
 struct Twist {
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();
@@ -99,7 +100,7 @@ struct Pose {
   return {X_AB.R * X_BC.R, X_AB.R * X_BC.p + X_AB.p};
 }
 
-/// Mass, first moment and moments of inertia of a rigid body about the origin of a frame.          theory.md (A.2)
+/// Mass, first moment and moments of inertia of a rigid body about the origin of a frame.     theory.md (A.2)
 struct SpatialInertia {
   double mass = 0.0;                                       ///< [kg]
   Eigen::Vector3d first_moment = Eigen::Vector3d::Zero();  ///< mass times centre of mass [kg m]

@@ -12,12 +12,13 @@ namespace snare::multibody {
 
 /// How a moving body is joined to its parent.
 ///
-/// A free joint has the coordinates p (3) [m] and a quaternion w, x, y, z (4) of the pose of the body in the joint's
-/// frame, and the velocities omega (3) [rad/s] and v (3) [m/s] of the body in its own axes.          theory.md (A.3)
+/// A free joint has the coordinates p (3) [m] and a quaternion w, x, y, z (4) of the pose of the body in the
+/// joint's
+/// frame, and the velocities omega (3) [rad/s] and v (3) [m/s] of the body in its own axes.   theory.md (A.3)
 enum class JointKind { revolute, prismatic, free };
 
-/// A moving body and the joint that carries it. At zero of a revolute or prismatic joint the body's frame is the
-/// joint's.
+/// A moving body and the joint that carries it. At zero of a revolute or prismatic joint the body's frame is
+/// the joint's.
 struct TreeBody {
   std::string name;
   int parent = -1;  ///< index of the body that carries it; -1: the world
@@ -43,23 +44,23 @@ struct TreeFrame {
 
 /// Rigid bodies in an open tree: constants only. Parents come before children.
 ///
-/// What a fixed joint holds becomes part of the body that carries it: its inertia is added and its frame is kept by
-/// name.
-/// Every body's frame is also a named frame. Frame 0 is the world, called "world".
+/// What a fixed joint holds becomes part of the body that carries it: its inertia is added and its frame is
+/// kept by name. Every body's frame is also a named frame. Frame 0 is the world, called "world".
 class Tree {
  public:
   Tree();
 
-  /// Adds a body on a joint whose frame has the pose X_FJ in an existing frame; the axis is made a unit vector. Returns
-  /// the index of the body's frame. Throws std::invalid_argument for a name that is taken, or no axis.
+  /// Adds a body on a joint whose frame has the pose X_FJ in an existing frame; the axis is made a unit
+  /// vector. Returns the index of the body's frame. Throws std::invalid_argument for a name that is taken, or
+  /// no axis.
   int add_moving(int frame, const std::string& name, JointKind joint, const Eigen::Vector3d& axis,
                  const Pose& X_FJ, const SpatialInertia& inertia);
-  /// Adds a body that is fixed in an existing frame; returns the index of its own frame. On the world its mass is
-  /// nothing.
+  /// Adds a body that is fixed in an existing frame; returns the index of its own frame. On the world its
+  /// mass is nothing.
   int add_fixed(int frame, const std::string& name, const Pose& X_FB, const SpatialInertia& inertia = {});
 
-  /// Moves the whole to another place: all that stands in the world frame W stands in a frame of the pose X_VW in the new
-  /// world V. Gravity stays as it is.
+  /// Moves the whole to another place: all that stands in the world frame W stands in a frame of the pose
+  /// X_VW in the new world V. Gravity stays as it is.
   void move(const Pose& X_VW);
 
   /// Moving bodies, every one behind its parent; the world is none of them.
@@ -101,7 +102,9 @@ struct TreeState {
 /// Pose of the body in its joint's frame at q, (nq) [rad, m, -].
 [[nodiscard]] Pose joint_pose(const TreeBody& body, const Eigen::VectorXd& q);
 
-/// Rate of the coordinates of a body on a free joint, (7) [m/s, 1/s], with the unit quaternion's rate 1/2 quat * (0, omega).  theory.md (A.3)
+/// Rate of the coordinates of a body on a free joint, (7) [m/s, 1/s], with the unit quaternion's rate 1/2
+/// quat * (0, omega).
+///                                                                                            theory.md (A.3)
 [[nodiscard]] Eigen::Matrix<double, 7, 1> free_coordinate_rate(const TreeBody& body, const Eigen::VectorXd& q,
                                                                const Eigen::VectorXd& v);
 

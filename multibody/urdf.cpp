@@ -89,8 +89,8 @@ RobotJoint to_joint(const urdf::Joint* from) {
   return joint;
 }
 
-/// Appends all links, depth first, children in the order of the joints' names as urdfdom keeps them. Chains may be long: what is
-/// still to come is on a stack of its own.
+/// Appends all links, depth first, children in the order of the joints' names as urdfdom keeps them. Chains
+/// may be long: what is still to come is on a stack of its own.
 void append(const urdf::ModelInterface& model, const urdf::Link& root, RobotDescription& robot) {
   robot.links.push_back({root.name, to_inertia(root)});
   std::vector<const urdf::Joint*> open;
@@ -124,7 +124,8 @@ std::vector<InputProblem> massless_ends(const std::string& file, const RobotDesc
   return problems;
 }
 
-/// The farthest that a centre of mass can be from the root: offsets along the branches, and of the masses in their links [m].
+/// The farthest that a centre of mass can be from the root: offsets along the branches, and of the masses in
+/// their links [m].
 double largest_reach(const RobotDescription& robot) {
   std::map<std::string, double> at{{robot.root, 0.0}};
   double reach = 0.0;

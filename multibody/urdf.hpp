@@ -38,12 +38,14 @@ struct RobotDescription {
   std::string name, root;
   std::vector<RobotLink> links;    ///< parents before children, the root first
   std::vector<RobotJoint> joints;  ///< joint i carries link i + 1
-  /// About numbers that are legal and more likely in another unit: moments of inertia beyond the robot's size, limits beyond a turn.
+  /// About numbers that are legal and more likely in another unit: moments of inertia beyond the robot's
+  /// size, limits beyond a turn.
   std::vector<std::string> warnings = {};
 };
 
-/// Reads a URDF file, SI units as URDF has them. Throws InputError with everything that is wrong: names, numbers,
-/// inertias that no body has, links that nothing carries, loops. docs/arm_files.md lists what is checked.
+/// Reads a URDF file, SI units as URDF has them. Throws InputError with everything that is wrong: names,
+/// numbers, inertias that no body has, links that nothing carries, loops. docs/arm_files.md lists what is
+/// checked.
 [[nodiscard]] RobotDescription read_urdf(const std::filesystem::path& file);
 /// The same from text in memory; `file` stands in messages.
 [[nodiscard]] RobotDescription parse_urdf(const std::string& file, const std::string& text);
@@ -54,7 +56,8 @@ struct RobotDescription {
 /// How the root link is joined to the frame that it is put on.
 enum class RootJoint { fixed, free };
 
-/// Adds the robot to a tree, its root link's frame on the given frame. Names in the tree are those of the links.
+/// Adds the robot to a tree, its root link's frame on the given frame. Names in the tree are those of the
+/// links.
 /// Throws std::invalid_argument for a name that the tree has already.
 void add_robot(Tree& tree, int frame, RootJoint root, const RobotDescription& robot);
 

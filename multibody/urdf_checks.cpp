@@ -25,7 +25,8 @@ constexpr double smallest_gyration = 1e-4, largest_gyration = 1000.0;
 
 /// A URDF file nests its elements six deep; beyond this it is none.
 constexpr std::size_t deepest = 64;
-/// The dynamics go with the square and, for natural frequencies, with the cube of the number of links; no arm has as many.
+/// The dynamics go with the square and, for natural frequencies, with the cube of the number of links; no arm
+/// has as many.
 constexpr std::size_t most_links = 2000;
 
 struct JointEnds {
@@ -83,8 +84,8 @@ class Checker {
     problems_.push_back({file_, line, key, value, requirement});
   }
 
-  /// What must be known before the file is given to a parser that calls itself for every element within another: how deep they
-  /// stand, and that no document type says what they are. False where it is refused.
+  /// What must be known before the file is given to a parser that calls itself for every element within
+  /// another: how deep they stand, and that no document type says what they are. False where it is refused.
   bool scan(const std::string& text) {
     int line = 1;
     std::size_t depth = 0;

@@ -100,8 +100,9 @@ bool BandLdlt::factorize(const SymmetricBandMatrix& a) {
 
 namespace {
 
-/// Substitutes forth and back in `width` right-hand sides at once, row by row, entry by entry side by side. The row that is known last comes
-/// last, so that little waits for it. Every one has the operations of one alone, in their order. B: the half bandwidth; 0: that of the matrix.
+/// Substitutes forth and back in `width` right-hand sides at once, row by row, entry by entry side by side.
+/// The row that is known last comes last, so that little waits for it. Every one has the operations of one
+/// alone, in their order. B: the half bandwidth; 0: that of the matrix.
 template <int B, int width>
 void substitute(const SymmetricBandMatrix& l, const std::vector<double>& inverse, double* first,
                 Eigen::Index stride, std::vector<double>& work) {

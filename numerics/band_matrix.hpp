@@ -39,7 +39,8 @@ class SymmetricBandMatrix {
   /// Adds to the symmetric pair (i, j), (j, i); to the diagonal once when i == j.
   void add(int i, int j, double value) { (i >= j ? lower(i, j) : lower(j, i)) += value; }
 
-  /// Entries (j, j) ... (j + b, j) one behind the other; those beyond the last row are storage that nobody reads.
+  /// Entries (j, j) ... (j + b, j) one behind the other; those beyond the last row are storage that nobody
+  /// reads.
   [[nodiscard]] double* column(int j) { return values_.data() + offset(j); }
   [[nodiscard]] const double* column(int j) const { return values_.data() + offset(j); }
 
@@ -72,9 +73,10 @@ class BandLdlt {
   [[nodiscard]] int negative_pivots() const noexcept { return negative_; }
   /// Smallest over largest |pivot| [-]. Depends on the units of the unknowns and on the mesh.
   [[nodiscard]] double pivot_ratio() const noexcept { return ratio_; }
-  /// Smallest share of its diagonal entry that a pivot keeps, |d_j| / max(|a_jj|, |a_jj - d_j|) [-]: what elimination
-  /// cancels. Does not depend on units. Below about 1e-14 the sign of that pivot is not known; near 1e-16 it is
-  /// round-off, which spoils the solution unless A is definite (a cantilever of n edges keeps about 1/n^3).
+  /// Smallest share of its diagonal entry that a pivot keeps, |d_j| / max(|a_jj|, |a_jj - d_j|) [-]: what
+  /// elimination cancels. Does not depend on units. Below about 1e-14 the sign of that pivot is not known;
+  /// near 1e-16 it is round-off, which spoils the solution unless A is definite (a cantilever of n edges
+  /// keeps about 1/n^3).
   [[nodiscard]] double pivot_share() const noexcept { return share_; }
 
   /// Solves A X = B in place; b has n rows, every column one right-hand side of any unit.

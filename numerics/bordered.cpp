@@ -11,8 +11,8 @@ namespace snare::numerics {
 
 bool BorderedSolver::factorize(const BorderedSystem& system) {
   whole_.reset();
-  // A pivot that keeps less than 1e-12 of its diagonal entry has lost 12 digits: round-off if K is singular, harmless
-  // if K is a fine mesh's and definite. A trial solution tells which.
+  // A pivot that keeps less than 1e-12 of its diagonal entry has lost 12 digits: round-off if K is singular,
+  // harmless if K is a fine mesh's and definite. A trial solution tells which.
   constexpr double suspicious_share = 1e-12;
   if (factorize_blocks(system) && (factor_.pivot_share() > suspicious_share || blocks_are_accurate(system))) {
     return true;
@@ -26,8 +26,8 @@ bool BorderedSolver::factorize(const BorderedSystem& system) {
   return true;
 }
 
-// Componentwise backward error (Oettli and Prager 1964) of a trial solution, max |b - A x| / (|A| |x| + |b|), below
-// half the digits: Newton's method then still converges as fast.
+// Componentwise backward error (Oettli and Prager 1964) of a trial solution, max |b - A x| / (|A| |x| + |b|),
+// below half the digits: Newton's method then still converges as fast.
 bool BorderedSolver::blocks_are_accurate(const BorderedSystem& system) const {
   const SymmetricBandMatrix& k = system.matrix;
   const int n = k.order();
@@ -118,7 +118,8 @@ bool BorderedSolver::factorize_blocks(const BorderedSystem& system) {
     determinant_sign_ = factor_.negative_pivots() % 2 == 0 ? 1 : -1;
     return true;
   }
-  // Equations of different units: scale the rows before pivoting. What is not a number has no pivot, which Eigen does not check.
+  // Equations of different units: scale the rows before pivoting. What is not a number has no pivot, which
+  // Eigen does not check.
   Eigen::VectorXd scale = schur.rowwise().lpNorm<Eigen::Infinity>();
   if (!schur.allFinite() || scale.minCoeff() == 0.0) return false;
   scale = scale.cwiseInverse();

@@ -11,9 +11,10 @@
 
 namespace snare::numerics {
 
-/// Block factorisation of a BorderedSystem; keeps K^-1 C for further right-hand sides. Where K with its anchors is
-/// singular although the whole is not, KLU factorises the whole: when the blocks cannot be factorised, or when a
-/// pivot of K is mostly round-off and a trial solution has a componentwise backward error above 1e-8. Unknowns and residuals of any unit.
+/// Block factorisation of a BorderedSystem; keeps K^-1 C for further right-hand sides. Where K with its
+/// anchors is singular although the whole is not, KLU factorises the whole: when the blocks cannot be
+/// factorised, or when a pivot of K is mostly round-off and a trial solution has a componentwise backward
+/// error above 1e-8. Unknowns and residuals of any unit.
 class BorderedSolver {
  public:
   /// False when the whole system is singular.

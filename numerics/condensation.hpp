@@ -10,16 +10,17 @@
 
 namespace snare::numerics {
 
-/// A linear system without the unknowns that a row of their own gives at once: rates v of places x, by the rows x' - v, and beside such
-/// pairs those that no other row has, with nothing else in their own.
-///                                                                                          theory.md (N.6)
+/// A linear system without the unknowns that a row of their own gives at once: rates v of places x, by the
+/// rows x' - v, and beside such pairs those that no other row has, with nothing else in their own.
+///                                                                                            theory.md (N.6)
 ///   row p:  a x + b v = r   =>   v = (r - a x)/b
 ///
-/// What other rows have by v goes to the column of x; the balance that has the number of v stands in the row of x. The unknowns
-/// left keep their order. Unknowns and rows of any unit.
+/// What other rows have by v goes to the column of x; the balance that has the number of v stands in the row
+/// of x. The unknowns left keep their order. Unknowns and rows of any unit.
 class Condensation {
  public:
-  /// pairs: (p, v) of x and v, taken where the row p has entries by p and v alone, and left as they are elsewhere.
+  /// pairs: (p, v) of x and v, taken where the row p has entries by p and v alone, and left as they are
+  /// elsewhere.
   Condensation(const SparseMatrix& pattern, const std::vector<std::pair<int, int>>& pairs);
 
   /// The pairs that were taken.
@@ -35,7 +36,8 @@ class Condensation {
   void expand(const Eigen::VectorXd& reduced, Eigen::Ref<Eigen::VectorXd> x) const;
 
  private:
-  /// Entries of the column of a rate that follow each other: slots of the full matrix, and rows of what is left.
+  /// Entries of the column of a rate that follow each other: slots of the full matrix, and rows of what is
+  /// left.
   struct Run {
     int slot = 0, row = 0, length = 0;
   };

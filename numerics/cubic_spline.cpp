@@ -44,7 +44,8 @@ SplineEquations spline_equations(const std::vector<double>& knots, SplineEnd upp
     return knots[static_cast<std::size_t>(cell) + 1] - knots[static_cast<std::size_t>(cell)];
   };
   // Continuous second derivative at the inner knots, h the widths of the cells:
-  //   m[i-1]/h[i-1] + 2 (1/h[i-1] + 1/h[i]) m[i] + m[i+1]/h[i] = 3 (v[i] - v[i-1])/h[i-1]^2 + 3 (v[i+1] - v[i])/h[i]^2
+  //   m[i-1]/h[i-1] + 2 (1/h[i-1] + 1/h[i]) m[i] + m[i+1]/h[i] = 3 (v[i] - v[i-1])/h[i-1]^2 + 3 (v[i+1]
+  //     - v[i])/h[i]^2
   for (int i = 1; i + 1 < size; ++i) {
     const double before = 1.0 / width(i - 1);
     const double after = 1.0 / width(i);
@@ -55,7 +56,8 @@ SplineEquations spline_equations(const std::vector<double>& knots, SplineEnd upp
     right.emplace_back(i, i, 3.0 * (before * before - after * after));
     right.emplace_back(i, i + 1, 3.0 * after * after);
   }
-  // Continuous third derivative at the knot next to the end: (m[i] + m[i+1] - 2 secant)/h^2 on both its sides.
+  // Continuous third derivative at the knot next to the end: (m[i] + m[i+1] - 2 secant)/h^2 on both its
+  // sides.
   const auto not_a_knot = [&](int row, int cell) {
     for (const double sign : {1.0, -1.0}) {
       const int c = sign > 0.0 ? cell : cell + 1;

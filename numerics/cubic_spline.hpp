@@ -13,12 +13,14 @@ enum class SplineEnd {
   level        ///< slope zero: mirror symmetry
 };
 
-/// Matrix D with which the slopes of the interpolating C2 cubic spline at its knots are D v.      theory.md (R.3)
-/// knots: strictly ascending, >= 1 of them; one knot has slope 0, two a straight line, three a parabola. Of any unit.
+/// Matrix D with which the slopes of the interpolating C2 cubic spline at its knots are D v.  theory.md (R.3)
+/// knots: strictly ascending, >= 1 of them; one knot has slope 0, two a straight line, three a parabola. Of
+/// any unit.
 [[nodiscard]] Eigen::MatrixXd spline_slopes(const std::vector<double>& knots,
                                             SplineEnd upper = SplineEnd::not_a_knot);
 
-/// The cell [knots[i], knots[i+1]] that holds x, or the first or last where x is outside. One knot: 0. All of any unit.
+/// The cell [knots[i], knots[i+1]] that holds x, or the first or last where x is outside. One knot: 0. All of
+/// any unit.
 [[nodiscard]] inline std::size_t find_cell(const double* knots, std::size_t count, double x) noexcept {
   std::size_t low = 0;
   std::size_t high = count > 1 ? count - 1 : 1;
@@ -29,11 +31,13 @@ enum class SplineEnd {
   return low;
 }
 
-/// A piecewise cubic with given values and slopes at its knots: C1. Abscissae x and values in whatever units they have.
+/// A piecewise cubic with given values and slopes at its knots: C1. Abscissae x and values in whatever units
+/// they have.
 class HermiteCurve {
  public:
   HermiteCurve(std::vector<double> knots, std::vector<double> values, std::vector<double> slopes);
-  /// Through values with the slopes of the C2 spline. Throws std::domain_error where knots lie too close for roundings.
+  /// Through values with the slopes of the C2 spline. Throws std::domain_error where knots lie too close for
+  /// roundings.
   HermiteCurve(std::vector<double> knots, std::vector<double> values);
 
   /// The curve at x; beyond the ends the outermost cubic goes on.
@@ -52,8 +56,9 @@ class HermiteCurve {
   std::vector<double> area_;  // integral up to each knot
 };
 
-/// Slopes held to [0, 3 secants] where the values ascend, so that the cubic through them ascends too (Fritsch and
-/// Carlson 1980); those at turns of the values become 0; elsewhere unchanged where they cannot overshoot. Of any unit.
+/// Slopes held to [0, 3 secants] where the values ascend, so that the cubic through them ascends too (Fritsch
+/// and Carlson 1980); those at turns of the values become 0; elsewhere unchanged where they cannot overshoot.
+/// Of any unit.
 [[nodiscard]] std::vector<double> monotone_slopes(const std::vector<double>& knots,
                                                   const std::vector<double>& values,
                                                   std::vector<double> slopes);

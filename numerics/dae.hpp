@@ -17,8 +17,8 @@ using VectorView = Eigen::Ref<const Eigen::VectorXd>;
 /// Whether the rate of an unknown appears in F(t, y, y') = 0.
 enum class DaeKind { differential, algebraic };
 
-/// Absolute tolerance of a stabilising multiplier, in any unit: none. Its round-off grows as one over the step, and what
-/// it does to other unknowns is tested there.
+/// Absolute tolerance of a stabilising multiplier, in any unit: none. Its round-off grows as one over the
+/// step, and what it does to other unknowns is tested there.
 constexpr double no_tolerance = 1e6;
 
 /// Unknowns that belong together, for tolerances and for messages.
@@ -48,7 +48,8 @@ class DaeLayout {
   int size_ = 0;
 };
 
-/// A pattern, and the slots of the entries that were asked for last time: those who ask in the same order again have nothing looked up.
+/// A pattern, and the slots of the entries that were asked for last time: those who ask in the same order
+/// again have nothing looked up.
 class PatternSlots {
  public:
   void attach(const SparseMatrix& pattern) {  ///< the caller's; what was asked for before is forgotten
@@ -71,8 +72,8 @@ class PatternSlots {
   std::vector<Known> known_;
 };
 
-/// Values on a pattern, by row and column, each in the unit of its row over that of its column: of any unit here. What the pattern does not have
-/// is left out.
+/// Values on a pattern, by row and column, each in the unit of its row over that of its column: of any unit
+/// here. What the pattern does not have is left out.
 class PatternValues {
  public:
   PatternValues(PatternSlots& slots, std::vector<double>& values) : slots_(slots), values_(values) {}
@@ -106,17 +107,19 @@ struct DaePoint {
   VectorView rate;
 };
 
-/// Where Newton's method begins on the way from the last accepted unknowns to those that are predicted for a step.
-///                                                                                               theory.md (M.12)
+/// Where Newton's method begins on the way from the last accepted unknowns to those that are predicted for a
+/// step.
+///                                                                                           theory.md (M.12)
 struct IterationStart {
   double share = 1.0;         ///< of the way, in [0, 1]; 1: at its end [-]
   bool out_of_reach = false;  ///< the step has to be shorter: it would go too far behind a touch
 };
 
-/// One contributor to F(t, y, y') = 0: it may own unknowns and adds to any row.                  theory.md (M.1)
+/// One contributor to F(t, y, y') = 0: it may own unknowns and adds to any row.               theory.md (M.1)
 ///
-/// Order of calls: `declare` once, then the rest; `sparsity` and `attach_pattern` ahead of a `jacobian` that wants another pattern, the first one
-/// at least. A part may keep workspace; one part serves one integration at a time. Unknowns, rows and rates are in SI units.
+/// Order of calls: `declare` once, then the rest; `sparsity` and `attach_pattern` ahead of a `jacobian` that
+/// wants another pattern, the first one at least. A part may keep workspace; one part serves one integration
+/// at a time. Unknowns, rows and rates are in SI units.
 class DaePart {
  public:
   DaePart() = default;
@@ -139,25 +142,28 @@ class DaePart {
   /// Number of functions whose zeros stop the integration.
   [[nodiscard]] virtual int event_count() const { return 0; }
   virtual void events(const DaePoint& /*at*/, std::span<double> /*values*/) {}
-  /// Asked before each Jacobian. True: there it has entries that the pattern has not, and `sparsity` lists them from now on.
+  /// Asked before each Jacobian. True: there it has entries that the pattern has not, and `sparsity` lists
+  /// them from now on.
   [[nodiscard]] virtual bool outgrows_pattern(const DaePoint& /*at*/) { return false; }
-  /// Where on the way from accepted to predicted unknowns Newton's method begins: where what touches does so as lightly as in the end.
+  /// Where on the way from accepted to predicted unknowns Newton's method begins: where what touches does so
+  /// as lightly as in the end.
   [[nodiscard]] virtual IterationStart iteration_start(const VectorView& /*from*/, const VectorView& /*to*/) {
     return {};
   }
   /// Told every accepted step.
   virtual void accept(const DaePoint& /*at*/) {}
-  /// Appends what the part remembers beside its unknowns, so that `restore_state` puts another part of the same making into
-  /// the same state, bit by bit.
+  /// Appends what the part remembers beside its unknowns, so that `restore_state` puts another part of the
+  /// same making into the same state, bit by bit.
   virtual void save_state(std::vector<double>& /*memory*/) const {}
-  /// Takes back what `save_state` has appended, from the front of `memory`, at the unknowns `y` that belong to it.
+  /// Takes back what `save_state` has appended, from the front of `memory`, at the unknowns `y` that belong
+  /// to it.
   virtual void restore_state(const VectorView& /*y*/, std::span<const double>& /*memory*/) {}
 };
 
 /// Takes the first number, of any unit, off a memory. Throws InputError when there is none.
 [[nodiscard]] double take(std::span<const double>& memory);
 
-/// F(t, y, y') = 0 of several parts on one sparse pattern, in SI units.                          theory.md (M.1)
+/// F(t, y, y') = 0 of several parts on one sparse pattern, in SI units.                       theory.md (M.1)
 class DaeSystem {
  public:
   /// The parts stay the caller's and outlive the system.
@@ -175,7 +181,8 @@ class DaeSystem {
   /// All (p, v) of the parts, see DaePart: of the present pattern.
   [[nodiscard]] const std::vector<std::pair<int, int>>& rates() const noexcept { return rates_; }
 
-  /// From here on these unknowns stay as they are, whatever the parts add to their rows: dy = 0 of each. None at first.
+  /// From here on these unknowns stay as they are, whatever the parts add to their rows: dy = 0 of each. None
+  /// at first.
   void hold(std::vector<int> unknowns);
 
   /// F into `rows`.

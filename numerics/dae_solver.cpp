@@ -15,7 +15,8 @@ DaeSolver::DaeSolver(const SparseMatrix& pattern, const std::vector<std::pair<in
 
 bool DaeSolver::factorize(const SparseMatrix& matrix) {
   if (!condensation_.update(matrix)) return false;
-  // Systems without rates are small, and dense where there is an arm: nothing is gained by rows without pivots.
+  // Systems without rates are small, and dense where there is an arm: nothing is gained by rows without
+  // pivots.
   if (no_rates_) return pivot();
   tried_ = by_klu_ = refined_ = false;
   if (!lu_) lu_.emplace(condensation_.matrix());
@@ -55,7 +56,8 @@ void DaeSolver::find_rest() {
   }
 }
 
-// The first solution is put into the equations, and where that shows lost digits what is left is solved for, there and in all later ones.
+// The first solution is put into the equations, and where that shows lost digits what is left is solved for,
+// there and in all later ones.
 bool DaeSolver::solve_without_pivots() {
   constexpr double most = 1e-8;
   lu_->solve(solution_);
@@ -76,8 +78,8 @@ bool DaeSolver::solve_without_pivots() {
   return !refined_ || backward_error() <= most;
 }
 
-// max_i |b - A x|_i/(|A| |x| + |b|)_i: the least relative change of A and b that makes x a solution (Oettli and Prager 1964).
-// Rows in which nothing happens are left out.
+// max_i |b - A x|_i/(|A| |x| + |b|)_i: the least relative change of A and b that makes x a solution (Oettli
+// and Prager 1964). Rows in which nothing happens are left out.
 double DaeSolver::backward_error() {
   find_rest<true>();
   const double nothing = 1e-20 * size_.maxCoeff();

@@ -13,8 +13,9 @@
 
 namespace snare::numerics {
 
-/// Solves with the Jacobian of a DAE: without rates of places, (N.6), by a factorisation without pivoting, (N.7), refined
-/// where the first solution after a factorisation shows that digits are lost, and by KLU where that does not help. Of any unit.
+/// Solves with the Jacobian of a DAE: without rates of places, (N.6), by a factorisation without pivoting,
+/// (N.7), refined where the first solution after a factorisation shows that digits are lost, and by KLU where
+/// that does not help. Of any unit.
 class DaeSolver {
  public:
   /// pairs: see Condensation.
@@ -26,7 +27,8 @@ class DaeSolver {
   }
   /// False when the matrix is singular. Throws LibraryError when memory runs out.
   [[nodiscard]] bool factorize(const SparseMatrix& matrix);
-  /// Solves A x = b in place; `matrix` is that of the last factorisation. False when it is singular after all.
+  /// Solves A x = b in place; `matrix` is that of the last factorisation. False when it is singular after
+  /// all.
   [[nodiscard]] bool solve(const SparseMatrix& matrix, Eigen::Ref<Eigen::VectorXd> b);
   /// How many factorisations needed pivoting.
   [[nodiscard]] long pivoted() const noexcept { return pivoted_; }

@@ -19,7 +19,8 @@ struct GeneralEigen {
 };
 [[nodiscard]] GeneralEigen general_eigen(const Eigen::MatrixXd& a);
 
-/// a = U diag(s) V^T with as many columns of U and V as a has rows or columns, whichever are fewer; s falls. Of any unit.
+/// a = U diag(s) V^T with as many columns of U and V as a has rows or columns, whichever are fewer; s falls.
+/// Of any unit.
 struct ThinSvd {
   Eigen::MatrixXd U;
   Eigen::VectorXd s;
@@ -27,8 +28,8 @@ struct ThinSvd {
 };
 [[nodiscard]] ThinSvd thin_svd(const Eigen::MatrixXd& a);
 
-/// x of a x = b for a square matrix, by LU with partial pivots; columns of b are right sides. Of any unit; not finite where a is
-/// singular.
+/// x of a x = b for a square matrix, by LU with partial pivots; columns of b are right sides. Of any unit;
+/// not finite where a is singular.
 [[nodiscard]] Eigen::MatrixXd solve_by_lu(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// x of a x = b for a symmetric matrix, by LDL^T. Of any unit.
@@ -40,7 +41,8 @@ struct ThinSvd {
 /// x of least |a x - b|, and among them the one of least norm; by the same decomposition. Of any unit.
 [[nodiscard]] Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
-/// x of least |a x - b| for a matrix of full rank, by Householder's QR decomposition with column pivoting. Of any unit.
+/// x of least |a x - b| for a matrix of full rank, by Householder's QR decomposition with column pivoting. Of
+/// any unit.
 [[nodiscard]] Eigen::VectorXd full_rank_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
 }  // namespace snare::numerics

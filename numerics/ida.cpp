@@ -95,8 +95,9 @@ Ida::Memory::Memory(DaeSystem& system, const IdaOptions& chosen, IdaIntegrals&& 
               ? make_newton_solver(callbacks, y_view.get(), options.renewals, context)
               : SunNonlinearSolver(made(SUNNonlinSol_Newton(y_view.get(), context), "SUNNonlinSol_Newton"))),
       events(static_cast<std::size_t>(system.event_count()), 0) {
-  // IDA bounds the mean over all unknowns of (error/tolerance)^2. So that a body's three velocities are not lost among a
-  // wire's hundreds, the mean is made one over blocks: an unknown counts as one over the size of its block.
+  // IDA bounds the mean over all unknowns of (error/tolerance)^2. So that a body's three velocities are not
+  // lost among a wire's hundreds, the mean is made one over blocks: an unknown counts as one over the size of
+  // its block.
   int tested = 0;
   int blocks = 0;
   for (const DaeBlock& block : system.layout().blocks()) {
@@ -171,8 +172,11 @@ void Ida::Memory::begin(double at, const Eigen::VectorXd& y0, const Eigen::Vecto
   std::fill(events.begin(), events.end(), 0);
 }
 
-// IDA would begin with a step on which nothing changes by more than half its tolerance, and double it with a Jacobian each
-// time: a body that flies uniformly costs a dozen. The error test divides a first step that is too long by four.   (M.2)
+// IDA would begin with a step on which nothing changes by more than half its tolerance, and double it with a
+// Jacobian each
+// time: a body that flies uniformly costs a dozen. The error test divides a first step that is too long by
+// four.
+//                                                                                                       (M.2)
 double Ida::Memory::first_step(double limit) const {
   if (options.first_step > 0.0 || options.cautious_start) return options.first_step;
   constexpr double of_the_way = 1e-3;
@@ -261,7 +265,8 @@ IdaAdvance Ida::advance(double limit, double max_step) {
   // IDA's own bound acts on what it chooses after the step, not on the length that it has chosen already.
   max_step = std::min(max_step, m.options.max_step);
   check(IDASetMaxStep(m.ida.get(), std::isfinite(max_step) ? max_step : 0.0), "IDASetMaxStep");
-  // A stop cuts the step behind it, too, which may go further: there is one only where this step would pass it.
+  // A stop cuts the step behind it, too, which may go further: there is one only where this step would pass
+  // it.
   double next = 0.0;
   if (!m.starting) check(IDAGetCurrentStep(m.ida.get(), &next), "IDAGetCurrentStep");
   const double stop = m.starting || next > max_step ? std::min(limit, m.time + max_step) : limit;

@@ -15,41 +15,45 @@
 
 namespace snare::numerics {
 
-/// Of what the Newton iteration's share of the tolerance is a bound.                          theory.md (M.12)
+/// Of what the Newton iteration's share of the tolerance is a bound.                         theory.md (M.12)
 enum class NewtonTest {
   mean,  ///< of the mean over all unknowns, as IDA does it, at the rate of convergence of an earlier step
   every_unknown  ///< of every unknown, at a rate of convergence of 1/10 at best
 };
 
-/// The error of a step is tested block by block: the root mean square of error over tolerance in a block, and of that over
-/// the blocks with differential unknowns, must be below one.
+/// The error of a step is tested block by block: the root mean square of error over tolerance in a block, and
+/// of that over the blocks with differential unknowns, must be below one.
 struct IdaOptions {
   double relative_tolerance =
       1e-5;  ///< of every unknown but those of blocks that are not relative [-], in (0, 1)
   /// Highest order of the backward differentiation formulas, 1 to 5. Orders above 2 are unstable for undamped
-  /// oscillations that the step does not resolve.                                                theory.md (M.2)
+  /// oscillations that the step does not resolve.                                             theory.md (M.2)
   int max_order = 5;
   double max_step = std::numeric_limits<double>::infinity();  ///< [s], > 0
   /// A smaller one is a failure [s], > 0: without it IDA creeps up to a time that it cannot pass, for ever.
   double smallest_step = 1e-13;
-  /// [s]; 0: a thousandth of the way to the limit, and at most a tenth of the longest step before the last start; where
-  /// that is too long the error test shortens it.                                                theory.md (M.2)
+  /// [s]; 0: a thousandth of the way to the limit, and at most a tenth of the longest step before the last
+  /// start; where
+  /// that is too long the error test shortens it.                                             theory.md (M.2)
   double first_step = 0.0;
   bool cautious_start =
       false;  ///< with first_step = 0: IDA's own, within which nothing changes by half its tolerance
   bool test_algebraic = false;  ///< algebraic unknowns take part in the error test (index 1 only)
   NewtonTest newton_test = NewtonTest::mean;
   double newton_share = 0.33;  ///< of the tolerance that the Newton iteration may leave [-]
-  /// By how much the leading coefficient of a step may change until there is a new matrix, of itself [-], in (0, 1).
+  /// By how much the leading coefficient of a step may change until there is a new matrix, of itself [-], in
+  /// (0, 1).
   double matrix_change = 0.25;
-  /// How many more matrices a step may have, of its own iterates, where the corrections shrink slowly with that of its first guess;
-  /// as many iterations are added. With any, a matrix of an earlier step is corrected by what its corrections show, and has three
+  /// How many more matrices a step may have, of its own iterates, where the corrections shrink slowly with
+  /// that of its first guess; as many iterations are added. With any, a matrix of an earlier step is
+  /// corrected by what its corrections show, and has three
   /// times as many iterations. With NewtonTest::every_unknown.                       theory.md (M.12), (N.8)
   int renewals = 0;
 };
 
-/// Integrals along the motion on which no equation depends, I' = f(t, y, y'): by the same formula, orders and steps as
-/// the unknowns. What is linear in the unknowns and has f as its rate agrees with its integral to round-off and to what
+/// Integrals along the motion on which no equation depends, I' = f(t, y, y'): by the same formula, orders and
+/// steps as the unknowns. What is linear in the unknowns and has f as its rate agrees with its integral to
+/// round-off and to what
 /// the Newton iteration leaves.                                                            theory.md (M.11)
 struct IdaIntegrals {
   int count = 0;
@@ -87,9 +91,11 @@ struct LimitOfStep {
   int block = -1;
 };
 
-/// SUNDIALS IDA (variable-order, variable-step BDF; as IDAS, which adds the integrals) with KLU on an analytic sparse
-/// Jacobian; the pattern is analysed when it changes only.                                theory.md (M.1), (M.2)
-/// Exceptions thrown by the parts pass through. Throws LibraryError when SUNDIALS cannot be set up. Times in s, y in SI units.
+/// SUNDIALS IDA (variable-order, variable-step BDF; as IDAS, which adds the integrals) with KLU on an
+/// analytic sparse
+/// Jacobian; the pattern is analysed when it changes only.                             theory.md (M.1), (M.2)
+/// Exceptions thrown by the parts pass through. Throws LibraryError when SUNDIALS cannot be set up. Times in
+/// s, y in SI units.
 class Ida {
  public:
   Ida(DaeSystem& system, const IdaOptions& options, IdaIntegrals integrals = {});
@@ -99,10 +105,12 @@ class Ida {
   Ida(Ida&&) noexcept;
   Ida& operator=(Ida&&) noexcept;
 
-  /// Begins at first order from a consistent (y, y'), after an event too. The integrals go on from where they are.
+  /// Begins at first order from a consistent (y, y'), after an event too. The integrals go on from where they
+  /// are.
   void start(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rate);
-  /// IDACalcIC: algebraic unknowns and rates of the differential ones from the given differential unknowns (index 1).
-  /// `towards`: a later time of the integration, for the scale of time [s]. Starts from there when it converges.
+  /// IDACalcIC: algebraic unknowns and rates of the differential ones from the given differential unknowns
+  /// (index 1). `towards`: a later time of the integration, for the scale of time [s]. Starts from there when
+  /// it converges.
   [[nodiscard]] IdaReport start_consistently(double time, const Eigen::VectorXd& y,
                                              const Eigen::VectorXd& rate, double towards);
 
@@ -119,7 +127,8 @@ class Ida {
   [[nodiscard]] Eigen::VectorXd interpolate(double time, int derivative = 0) const;
   /// The integrals at time(); zero at the first start unless `set_integrals`.
   [[nodiscard]] const Eigen::VectorXd& integrals() const;
-  /// Their rates at time(): as evaluated there, where no event has cut the step. The polynomial's err by the formula's share.
+  /// Their rates at time(): as evaluated there, where no event has cut the step. The polynomial's err by the
+  /// formula's share.
   [[nodiscard]] Eigen::VectorXd integral_rates() const;
   /// To be called before a start.
   void set_integrals(const Eigen::VectorXd& values);
@@ -143,7 +152,8 @@ class Ida {
 /// Called after every step; true: stop here.
 using IdaObserver = std::function<bool(const Ida&)>;
 
-/// Integrates to `end` without regard to events (they only split steps); `interrupted` when the observer says so. end [s].
+/// Integrates to `end` without regard to events (they only split steps); `interrupted` when the observer says
+/// so. end [s].
 [[nodiscard]] IdaReport integrate(Ida& ida, double end, const IdaObserver& observer = {});
 
 }  // namespace snare::numerics

@@ -47,7 +47,8 @@ extern "C" int snare_ida_residual(realtype t, N_Vector y, N_Vector rate, N_Vecto
   });
 }
 
-// One over the tolerance of each unknown, w_i = 1/(s_i (r_i |y_i| + a_i)): an error e passes by the mean of (w_i e_i)^2.
+// One over the tolerance of each unknown, w_i = 1/(s_i (r_i |y_i| + a_i)): an error e passes by the mean of
+// (w_i e_i)^2.
 extern "C" int snare_ida_weights(N_Vector y, N_Vector weights, void* data) {
   const auto& self = *static_cast<const IdaCallbacks*>(data);
   auto out = map(weights);
@@ -97,10 +98,11 @@ int IdaCallbacks::begin_iteration(const Eigen::Ref<const Eigen::VectorXd>& predi
   });
 }
 
-// IDA's own test bounds the root mean square over all unknowns and takes the rate of an earlier step for granted: one
-// unknown among hundreds, a constraint's or a quaternion's, may then be left far outside its tolerance, and what is
-// quadratic in it drifts. Here every unknown must be within its share, and no rate is believed to be better than 1 in 10. What
-// would not get there with its matrix within the iterations that are left is given up at once: they would be lost.
+// IDA's own test bounds the root mean square over all unknowns and takes the rate of an earlier step for
+// granted: one unknown among hundreds, a constraint's or a quaternion's, may then be left far outside its
+// tolerance, and what is quadratic in it drifts. Here every unknown must be within its share, and no rate is
+// believed to be better than 1 in 10. What would not get there with its matrix within the iterations that are
+// left is given up at once: they would be lost.
 int IdaCallbacks::converged(int iteration, const NewtonState& at,
                             const Eigen::Ref<const Eigen::VectorXd>& step,
                             const Eigen::Ref<const Eigen::VectorXd>& weight) {

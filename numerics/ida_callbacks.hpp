@@ -29,7 +29,8 @@ struct NewtonState {
       0.0;  ///< corrections smaller than this share of the first may be larger than the one before [-]
 };
 
-/// What IDA's callbacks in C reach through their user pointer; an exception waits here until IDA has returned.
+/// What IDA's callbacks in C reach through their user pointer; an exception waits here until IDA has
+/// returned.
 struct IdaCallbacks {
   DaeSystem& system;
   IdaStatistics statistics;
@@ -39,7 +40,8 @@ struct IdaCallbacks {
   std::function<void(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates)> integrands;  // of the integrals
   Eigen::VectorXd integrated{};  // their rates, as IDA has evaluated them last
   Eigen::VectorXd accepted{};    // unknowns of the last accepted state
-  // Of the Newton iteration: the first and the last correction of this step over the tolerances, and what a rate of convergence leaves after one.
+  // Of the Newton iteration: the first and the last correction of this step over the tolerances, and what a
+  // rate of convergence leaves after one.
   double first_correction = 0.0;         ///< [-]
   double last_correction = 0.0;          ///< [-]
   double rate = 0.0;                     ///< the last correction over the one before [-]
@@ -48,12 +50,13 @@ struct IdaCallbacks {
 
   static constexpr double unknown_remainder = 20.0;
 
-  /// Where an iteration begins on the way from the accepted unknowns to those of any unit that are told. 0, positive where the step is out of
-  /// reach, negative where an exception waits.
+  /// Where an iteration begins on the way from the accepted unknowns to those of any unit that are told. 0,
+  /// positive where the step is out of reach, negative where an exception waits.
   [[nodiscard]] int begin_iteration(const Eigen::Ref<const Eigen::VectorXd>& predicted, double& share);
 
-  /// SUN_NLS_SUCCESS when every unknown is within its share of its tolerance after a step of the iteration, the first of which
-  /// has the number 0; SUN_NLS_CONTINUE, or SUN_NLS_CONV_RECVR when it does not converge.        theory.md (M.12)
+  /// SUN_NLS_SUCCESS when every unknown is within its share of its tolerance after a step of the iteration,
+  /// the first of which
+  /// has the number 0; SUN_NLS_CONTINUE, or SUN_NLS_CONV_RECVR when it does not converge.    theory.md (M.12)
   [[nodiscard]] int converged(int iteration, const NewtonState& at,
                               const Eigen::Ref<const Eigen::VectorXd>& step,
                               const Eigen::Ref<const Eigen::VectorXd>& weight);
@@ -63,7 +66,8 @@ struct IdaCallbacks {
   Eigen::VectorXd scale{};  // of both tolerances: makes IDA's mean over unknowns one over blocks (see Ida)
 };
 
-// What IDA calls; the last argument is the IdaCallbacks. 0: done, positive: try a smaller step, negative: an exception waits.
+// What IDA calls; the last argument is the IdaCallbacks. 0: done, positive: try a smaller step, negative: an
+// exception waits.
 extern "C" {
 int snare_ida_residual(realtype t, N_Vector y, N_Vector rate, N_Vector rows, void* data);
 /// Of the error test: one over the tolerances.

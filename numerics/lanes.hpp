@@ -8,10 +8,10 @@
 
 namespace snare::numerics {
 
-/// Four numbers that are worked on at once, and vectors of three of them: formulas written for a number type S and vectors
-/// Vector3<S> hold for one place (S = double) and for four (S = Lanes). Every operation rounds as that of a single number
-/// does, whatever the processor has: two by two, or four at once in functions compiled for that, into which all of this is
-/// put.
+/// Four numbers that are worked on at once, and vectors of three of them: formulas written for a number type
+/// S and vectors Vector3<S> hold for one place (S = double) and for four (S = Lanes). Every operation rounds
+/// as that of a single number does, whatever the processor has: two by two, or four at once in functions
+/// compiled for that, into which all of this is put.
 struct Lanes {
   using Four [[gnu::vector_size(32)]] = double;
   static constexpr int count = 4;

@@ -15,13 +15,14 @@ namespace {
 constexpr int most_with_own = 8;    // iterations with a matrix of the step, but for those after a renewal
 constexpr int most_with_old = 4;    // with that of an earlier step: a new one costs about as much
 constexpr int most_corrected = 12;  // with such a one that is corrected
-// From where a touch begins, and the share of the first correction that later ones stay below while its load finds its depth.
+// From where a touch begins, and the share of the first correction that later ones stay below while its load
+// finds its depth.
 constexpr int most_at_touch = 20, renewals_at_touch = 10;
 constexpr double may_grow_at_touch = 0.1;
 constexpr double slow = 0.25;       // rate of convergence beyond which a new matrix pays
 constexpr double on_its_way = 0.5;  // rate below which what an old matrix has corrected is kept
-// Of the share, with a matrix of another leading coefficient. Forces within are in balance whatever the matrix; with the inertia of
-// another step momentum is not.
+// Of the share, with a matrix of another leading coefficient. Forces within are in balance whatever the
+// matrix; with the inertia of another step momentum is not.
 constexpr double with_other_inertia = 0.4;
 
 struct Newton {
@@ -142,7 +143,8 @@ int snare_newton_solve(SUNNonlinearSolver solver, N_Vector, N_Vector correction,
         break;
       }
       code = self.system(correction, self.step, memory);
-      // A touch stiffens with its depth: what the matrix of the first guess corrects slowly, that of the present one does.
+      // A touch stiffens with its depth: what the matrix of the first guess corrects slowly, that of the
+      // present one does.
       if (code == SUN_NLS_SUCCESS && current != SUNFALSE && k > 0 && callbacks.rate > slow &&
           renewals < most_renewals) {
         code = self.setup(SUNTRUE, &current, memory);

@@ -48,7 +48,7 @@ SolveReport newton(PathProblem& problem, PathPoint& point, PathWorkspace& w, int
       return report.end(Termination::singular_matrix, "the tangent matrix is singular");
     }
     w.factored = true;
-    // [K C; D E] (dq, db) = -(r_q, r_b).                                                       theory.md (N.1)
+    // [K C; D E] (dq, db) = -(r_q, r_b).                                                      theory.md (N.1)
     w.band_step = -w.system.band_residual;
     w.border_step = -w.system.border_residual;
     w.solver.solve(w.system, w.band_step, w.border_step);
@@ -83,7 +83,7 @@ std::optional<PathTangent> tangent(PathProblem& problem, const PathPoint& point,
   if (!workspace.solver.factorize(workspace.system))
     return like != nullptr ? std::optional(*like) : std::nullopt;
   PathTangent result;
-  // [K C; D E] (q', b') = -(0, d r_b/d p) with p' = 1, then scaled to |q'|^2/n + p'^2 = 1.       theory.md (N.4)
+  // [K C; D E] (q', b') = -(0, d r_b/d p) with p' = 1, then scaled to |q'|^2/n + p'^2 = 1.    theory.md (N.4)
   result.band.setZero(point.band.size());
   result.border = -workspace.by_parameter;
   workspace.solver.solve(workspace.system, result.band, result.border);
@@ -106,7 +106,7 @@ SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoin
   const auto n = static_cast<double>(point.band.size());
   const auto m = point.border.size();
   const auto finish = [&](PathWorkspace& w) {
-    // One more column, d r_b/d p, and one more row: q'.(q - q_0)/n + p'(p - p_0) - s = 0.        theory.md (N.5)
+    // One more column, d r_b/d p, and one more row: q'.(q - q_0)/n + p'(p - p_0) - s = 0.     theory.md (N.5)
     BorderedSystem& s = w.system;
     s.corner.conservativeResize(m + 1, m + 1);
     s.corner.row(m).setZero();

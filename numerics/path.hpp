@@ -43,12 +43,15 @@ struct PathWorkspace {
 };
 
 /// Newton's method at the fixed parameter of `point`, from `point` as the start.     theory.md (N.1)
-/// On success the factorisation of the last Newton step is in the workspace, unless none was needed (`factored`).
+/// On success the factorisation of the last Newton step is in the workspace, unless none was needed
+/// (`factored`).
 SolveReport correct(PathProblem& problem, PathPoint& point, PathWorkspace& workspace, int max_iterations);
 
-/// Direction of the path at a corrected point, of unit length in the norm |band|^2 / n + parameter^2 and pointing
+/// Direction of the path at a corrected point, of unit length in the norm |band|^2 / n + parameter^2 and
+/// pointing
 /// so that its product with `like` is positive.                                       theory.md (N.4)
-/// Where the matrix there is singular the path has no such direction: then `like`, or nothing where that is null.
+/// Where the matrix there is singular the path has no such direction: then `like`, or nothing where that is
+/// null.
 struct PathTangent {
   Eigen::VectorXd band;
   Eigen::VectorXd border;
@@ -57,7 +60,8 @@ struct PathTangent {
 [[nodiscard]] std::optional<PathTangent> tangent(PathProblem& problem, const PathPoint& point,
                                                  PathWorkspace& workspace, const PathTangent* like);
 
-/// Newton's method for the point of the path in the plane through `start` + step * tangent that is normal to the
+/// Newton's method for the point of the path in the plane through `start` + step * tangent that is normal to
+/// the
 /// tangent (pseudo arc length, Keller 1977): passes folds in the parameter.          theory.md (N.5)
 /// step: in the norm of PathTangent, in the units of band and parameter.
 SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoint& start,

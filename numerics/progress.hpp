@@ -9,26 +9,30 @@
 
 namespace snare::numerics {
 
-/// What a motion spends: evaluations of its equations in the window that is open. Counts and no times of the clock, so that the same
-/// input ends at the same step everywhere. Goes through checkpoints.                                        theory.md (M.30)
+/// What a motion spends: evaluations of its equations in the window that is open. Counts and no times of the
+/// clock, so that the same
+/// input ends at the same step everywhere. Goes through checkpoints.                         theory.md (M.30)
 struct Effort {
   long evaluations = 0;  ///< of the residual since the window began
   double since = 0.0;    ///< when it began [s]
 };
 
-/// Tells an integration that gets nowhere from one that is long: whenever a window of evaluations is full, the time that they brought
-/// is looked at. Where it is less than the least, and what is left would take more than another window, the integration has stalled.
-///                                                                                                        theory.md (M.30)
+/// Tells an integration that gets nowhere from one that is long: whenever a window of evaluations is full,
+/// the time that they brought is looked at. Where it is less than the least, and what is left would take more
+/// than another window, the integration has stalled.
+///                                                                                           theory.md (M.30)
 class Progress {
  public:
   /// least: what a window must bring [s], >= 0; 0: nothing.
   explicit Progress(double least = 0.0) : least_(least) {}
 
-  /// To be called after every step; `evaluations`: that it took, `end`: of the motion [s]. Why it has stalled, or nothing.
+  /// To be called after every step; `evaluations`: that it took, `end`: of the motion [s]. Why it has
+  /// stalled, or nothing.
   [[nodiscard]] std::optional<std::string> add(const Ida& ida, long evaluations, double end, Effort& effort);
 
-  /// Evaluations of a window: 40,000, and of few unknowns as many as make 5e7 rows. That is 5 to 30 s of a core for up to some
-  /// thousand unknowns (0.1 us a row, with all that belongs to its evaluation; 0.5 us with a matrix for every step).
+  /// Evaluations of a window: 40,000, and of few unknowns as many as make 5e7 rows. That is 5 to 30 s of a
+  /// core for up to some thousand unknowns (0.1 us a row, with all that belongs to its evaluation; 0.5 us
+  /// with a matrix for every step).
   [[nodiscard]] static long window(long unknowns);
 
  private:

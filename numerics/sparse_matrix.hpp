@@ -29,7 +29,8 @@ struct SparseMatrix {
 /// A x for a vector of the matrix's order; in the unit of both.
 [[nodiscard]] Eigen::VectorXd product(const SparseMatrix& matrix, const Eigen::VectorXd& x);
 [[nodiscard]] Eigen::VectorXcd product(const SparseMatrix& matrix, const Eigen::VectorXcd& x);
-/// Multiplies every entry by the factors of its row and of its column, each of the matrix's order, of any unit.
+/// Multiplies every entry by the factors of its row and of its column, each of the matrix's order, of any
+/// unit.
 void scale(SparseMatrix& matrix, const Eigen::VectorXd& rows, const Eigen::VectorXd& columns);
 /// Largest magnitude in every row, 0 where it has no entry; in the unit of the matrix.
 [[nodiscard]] Eigen::VectorXd largest_of_rows(const SparseMatrix& matrix);

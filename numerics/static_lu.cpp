@@ -20,9 +20,10 @@ using base::at;
 
 namespace {
 
-/// The unknowns in their order: first those with few neighbours; one without a value on the diagonal, a multiplier for one, after
-/// the last of its neighbours that have one. What such a row asks for may only be moved by the multiplier of another one, as a rate by the
-/// force that holds the place: the stabiliser of that place has no pivot before. Of two it is the later one.
+/// The unknowns in their order: first those with few neighbours; one without a value on the diagonal, a
+/// multiplier for one, after the last of its neighbours that have one. What such a row asks for may only be
+/// moved by the multiplier of another one, as a rate by the force that holds the place: the stabiliser of
+/// that place has no pivot before. Of two it is the later one.
 std::vector<int> elimination_order(const SparseMatrix& matrix) {
   const int n = matrix.order;
   const Eigen::Map<const Eigen::SparseMatrix<double>> view(n, n, static_cast<Eigen::Index>(matrix.row.size()),
@@ -149,8 +150,9 @@ bool StaticLu::eliminate_in_pairs() {
   return eliminate();
 }
 
-// The four rows of a block are the four numbers at once: what a column takes from them needs one number of the vector. Rows that a
-// block does not have are others' and stay: nothing is taken from them, and their part of the square is 1.
+// The four rows of a block are the four numbers at once: what a column takes from them needs one number of
+// the vector. Rows that a block does not have are others' and stay: nothing is taken from them, and their
+// part of the square is 1.
 [[gnu::always_inline]] inline void StaticLu::solve_block(const Block& block) {
   const Four* const entries = reinterpret_cast<const Four*>(columns_.data()) + block.first;
   const Four* const square = reinterpret_cast<const Four*>(squares_.data()) + most_rows * block.square;
@@ -264,8 +266,8 @@ StaticLu::StaticLu(const SparseMatrix& matrix)
     : order_(matrix.order), unknown_(elimination_order(matrix)), work_(at(order_ + most_rows), 0.0) {
   std::vector<int> place(at(order_));
   for (int k = 0; k < order_; ++k) place[at(unknown_[at(k)])] = k;
-  // After row k is used, every later row that has k has what k has: columns beyond k of the pattern of A + A^T and of the rows
-  // whose first later column is k.
+  // After row k is used, every later row that has k has what k has: columns beyond k of the pattern of A +
+  // A^T and of the rows whose first later column is k.
   std::vector<std::vector<int>> after(at(order_)), waiting(at(order_));
   for (int j = 0; j < order_; ++j) {
     for (int s = matrix.column_start[at(j)]; s < matrix.column_start[at(j) + 1]; ++s) {

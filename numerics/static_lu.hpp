@@ -10,10 +10,11 @@ namespace snare::numerics {
 
 /// A = L U on a fixed pattern in a fixed order, without a search for pivots.                 theory.md (N.7)
 ///
-/// Rows and columns are in the order of least degree (Amestoy, Davis and Duff 1996) of the pattern of A + A^T; what fills up is
-/// known beforehand, so that a row is eliminated by several at once in runs of neighbours. A chain of vertices with a few unknowns
-/// each takes less than a third of the time of KLU. Accurate where no pivot is small beside what stands in its row and column: the caller
-/// has to look at a solution. Of any unit.
+/// Rows and columns are in the order of least degree (Amestoy, Davis and Duff 1996) of the pattern of A +
+/// A^T; what fills up is known beforehand, so that a row is eliminated by several at once in runs of
+/// neighbours. A chain of vertices with a few unknowns each takes less than a third of the time of KLU.
+/// Accurate where no pivot is small beside what stands in its row and column: the caller has to look at a
+/// solution. Of any unit.
 class StaticLu {
  public:
   /// The pattern, and with its values where the diagonal is empty: such unknowns come after their neighbours.
@@ -35,8 +36,8 @@ class StaticLu {
     int common = 0;         // how many last entries of these rows have the same columns
     int first_run = 0;      // up to that of the next elimination
   };
-  /// Rows that follow each other and have the same columns before or behind their square on the diagonal. Each column's entries are
-  /// together, four whatever the rows; so are those of the inverse of the square.
+  /// Rows that follow each other and have the same columns before or behind their square on the diagonal.
+  /// Each column's entries are together, four whatever the rows; so are those of the inverse of the square.
   struct Block {
     int row = 0, rows = 0;
     int first = 0, last = 0;  // columns, of those listed

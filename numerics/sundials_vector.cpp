@@ -1,5 +1,6 @@
-// The operations on serial vectors that the integrator spends its time in, as loops that the compiler makes use of vector
-// registers for: SUNDIALS' own go element by element. Clones of a vector have the operations of the vector.
+// The operations on serial vectors that the integrator spends its time in, as loops that the compiler makes
+// use of vector registers for: SUNDIALS' own go element by element. Clones of a vector have the operations of
+// the vector.
 
 #include "numerics/ida_callbacks.hpp"
 #include "numerics/sundials.hpp"

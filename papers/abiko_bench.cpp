@@ -42,7 +42,8 @@ coupling::PushCurve pushed(const coupling::PushProblem& test, const Runs& runs) 
   return curve;
 }
 
-/// Force of the traced wire at the displacements of a series, which are counted from the zero that was fitted with it.
+/// Force of the traced wire at the displacements of a series, which are counted from the zero that was fitted
+/// with it.
 std::vector<double> recorded(const reduction::WireCase& wire, std::size_t k, const Series& series,
                              const Runs& runs) {
   coupling::PushProblem test = wire.test;

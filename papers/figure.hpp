@@ -112,8 +112,8 @@ struct Paper {
   std::vector<Lost> lost;
 };
 
-/// Computes a figure. Its rows get the paper and the figure as group, name and source. Throws `Stopped` where somebody
-/// wants the work to end.
+/// Computes a figure. Its rows get the paper and the figure as group, name and source. Throws `Stopped` where
+/// somebody wants the work to end.
 [[nodiscard]] FigureResult made(const Paper& paper, const Figure& figure, Runs& runs);
 
 /// A statement of a paper that holds or does not.
@@ -130,7 +130,8 @@ struct Input {
 /// A table of inputs with a row each, which may differ by half of the last printed digit.
 [[nodiscard]] FigureResult inputs(const std::vector<Input>& all, validation::Kind kind);
 
-/// A number, in whatever unit, with that many significant digits; whole numbers below a million keep all of theirs.
+/// A number, in whatever unit, with that many significant digits; whole numbers below a million keep all of
+/// theirs.
 [[nodiscard]] std::string digits(double value, int significant = 4);
 
 }  // namespace snare::papers

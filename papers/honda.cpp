@@ -52,7 +52,8 @@ FigureResult figure_5(Runs&) {
 
 // ---- the capture on the arm: Figs. 6 and 11, Tables 1 and 3 ----
 
-/// The shipped capture with the shaft 20 mm off the axis, at rest, which the wires meet in the order of the text.
+/// The shipped capture with the shaft 20 mm off the axis, at rest, which the wires meet in the order of the
+/// text.
 Case capture(Runs&) {
   return {"scenarios/ssrms_htv_capture.toml",
           {"bodies[htv].position_mm=[-10.0,17.3205,5200.0]", "bodies[htv].velocity_m_s=[0.0,0.0,0.0]"}};

@@ -30,7 +30,8 @@ struct Condition {
 constexpr std::array<Condition, 4> conditions{
     {{2.0e5, 1.0e2}, {2.0e5, 1.0e4}, {2.0e6, 1.0e2}, {2.0e6, 1.0e4}}};
 
-/// The visitor of `ssrms_rigidize.toml` drifts freely, its plate 5 mm before the end effector, and nothing pulls.
+/// The visitor of `ssrms_rigidize.toml` drifts freely, its plate 5 mm before the end effector, and nothing
+/// pulls.
 Case contact(const Condition& condition) {
   return {
       "scenarios/ssrms_rigidize.toml",

@@ -17,8 +17,8 @@ namespace snare::papers {
 /// All of them, in this order.
 [[nodiscard]] std::vector<const Paper*> all_papers();
 
-/// A check a paper, of the rows of its figures; those that another group of rows compares are left out. data: folder of
-/// the shipped files.
+/// A check a paper, of the rows of its figures; those that another group of rows compares are left out. data:
+/// folder of the shipped files.
 [[nodiscard]] std::vector<validation::Check> paper_checks(const std::filesystem::path& data);
 
 }  // namespace snare::papers

@@ -28,8 +28,8 @@ struct Run {
   coupling::MotionResult result;
   results::History history, telemetry;  ///< history.csv and telemetry.csv of this run
 
-  /// Two columns of the table that has `y`, in the units of their names. Throws std::out_of_range, naming both,
-  /// if no table has them.
+  /// Two columns of the table that has `y`, in the units of their names. Throws std::out_of_range, naming
+  /// both, if no table has them.
   [[nodiscard]] std::pair<const std::vector<double>&, const std::vector<double>&> columns(
       const std::string& x, const std::string& y) const;
   /// Time of the first touch of a contact [s]; NaN where it never touched.

@@ -12,8 +12,8 @@
 
 namespace snare::python {
 
-/// A document as Python has it: objects are dictionaries, arrays of numbers alone NumPy arrays (of whole numbers where all are),
-/// other arrays lists, null None.
+/// A document as Python has it: objects are dictionaries, arrays of numbers alone NumPy arrays (of whole
+/// numbers where all are), other arrays lists, null None.
 [[nodiscard]] pybind11::object to_python(const nlohmann::json& document);
 
 /// The path that a text or an os.PathLike names. Throws TypeError for anything else, naming the argument.

@@ -4,8 +4,9 @@
 
 namespace snare::python {
 
-/// Work without the GIL, for as long as it lives. Unlike pybind11's guard it survives the end of the interpreter: a daemon thread that wants
-/// to come back while the interpreter closes is held until the process ends, where CPython would unwind it through C++ and abort.
+/// Work without the GIL, for as long as it lives. Unlike pybind11's guard it survives the end of the
+/// interpreter: a daemon thread that wants to come back while the interpreter closes is held until the
+/// process ends, where CPython would unwind it through C++ and abort.
 class WithoutGil {
  public:
   WithoutGil();

@@ -29,7 +29,8 @@ struct Given {
   bool masked = false;  ///< it was a masked array of NumPy
 };
 
-/// What was given as the argument `name`. NumPy would also read texts, times and the real parts of complex numbers: a TypeError here.
+/// What was given as the argument `name`. NumPy would also read texts, times and the real parts of complex
+/// numbers: a TypeError here.
 [[nodiscard]] Given numbers_of(const pybind11::object& given, const char* name);
 
 /// Arrays of one shape, or single numbers beside them: what a loop may step through.
@@ -65,8 +66,8 @@ class Broadcast {
     if (masked_) join_masks(given);
   }
 
-  /// Calls function(numbers...) for every point without the GIL. A number where all are; a masked array where one is, with the points masked
-  /// that are masked in any argument, for which nothing is called.
+  /// Calls function(numbers...) for every point without the GIL. A number where all are; a masked array where
+  /// one is, with the points masked that are masked in any argument, for which nothing is called.
   template <class Result, class Function>
   [[nodiscard]] pybind11::object map(const Function& function) const {
     pybind11::array_t<Result> result(shape_);

@@ -6,8 +6,8 @@
 
 namespace snare::python {
 
-/// An object of T as the argument of a bound function, refused where it was made by __new__ without __init__: pybind11 itself would pass
-/// memory that holds nothing.
+/// An object of T as the argument of a bound function, refused where it was made by __new__ without __init__:
+/// pybind11 itself would pass memory that holds nothing.
 template <class T>
 struct Ready {
   const T* object = nullptr;

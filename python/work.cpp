@@ -81,7 +81,8 @@ bool wait(Work& work, double seconds) {
   return work.changed.wait_for(lock, std::chrono::duration<double>(seconds), [&work] { return work.done; });
 }
 
-/// What Python has to say meanwhile: throws py::error_already_set for an interrupt and for what `progress` raises.
+/// What Python has to say meanwhile: throws py::error_already_set for an interrupt and for what `progress`
+/// raises.
 void ask_python(Work& work, const py::object& progress) {
   std::optional<std::string> stage;
   {

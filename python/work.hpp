@@ -11,10 +11,11 @@ namespace snare::python {
 
 /// Does long work while Python stays responsive.
 ///
-/// The work runs in a thread of its own without the GIL; the calling thread looks at it every `glance_s`, tells `progress` (a
-/// callable of one text, or None) what is under way, and asks Python whether an interrupt has come. Then, and where `progress`
-/// raises, the work is told to stop and is waited for `patience_s`; work that has not come to a point where it looks by then is
-/// left to end by itself, and the interrupt is raised at once. What the work reads must therefore belong to it.
+/// The work runs in a thread of its own without the GIL; the calling thread looks at it every `glance_s`,
+/// tells `progress` (a callable of one text, or None) what is under way, and asks Python whether an interrupt
+/// has come. Then, and where `progress` raises, the work is told to stop and is waited for `patience_s`; work
+/// that has not come to a point where it looks by then is left to end by itself, and the interrupt is raised
+/// at once. What the work reads must therefore belong to it.
 /// threads: of the work, 0: one a processor. Exceptions of the work are thrown here.
 void do_work(const std::function<void(const results::Watch&)>& work, int threads,
              const pybind11::object& progress);
@@ -22,7 +23,8 @@ void do_work(const std::function<void(const results::Watch&)>& work, int threads
 inline constexpr double glance_s = 0.05;
 inline constexpr double patience_s = 0.6;
 
-/// Ends the work of daemon threads and waits for what was left, some seconds at most: before the interpreter takes down what they use.
+/// Ends the work of daemon threads and waits for what was left, some seconds at most: before the interpreter
+/// takes down what they use.
 void end_work();
 
 /// The result of `make`, done as work. `make` is copied into the work, and must hold all that it reads.

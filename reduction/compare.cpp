@@ -149,7 +149,8 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
   for (const FittedLaw& law : place.laws) {
     add_spring(law.form->name(), static_cast<int>(law.values.size()), law.range, *law.form->with(law.values));
   }
-  // Honda et al., Table 4: the stiffness of half a wire that they started from; it counts from where the wire is taut.
+  // Honda et al., Table 4: the stiffness of half a wire that they started from; it counts from where the wire
+  // is taut.
   const coupling::PushProblem& t = one.wire.test;
   const coupling::LawPlace where{t.mount.span, place.position, t.wire.length, t.wire.bending_stiffness()};
   Eigen::VectorXd published(2);

@@ -48,8 +48,8 @@ struct CaseComparison {
   numerics::SolveReport report;          ///< not usable: the full wire did not reach the end; no models then
 };
 
-/// Runs the full wire, the table of its curve and every law fitted to it, and the given laws, over the travels
-/// of a case.
+/// Runs the full wire, the table of its curve and every law fitted to it, and the given laws, over the
+/// travels of a case.
 [[nodiscard]] CaseComparison compare_static(const StaticCase& one, const DistilSettings& settings);
 
 }  // namespace snare::reduction

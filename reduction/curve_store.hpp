@@ -22,7 +22,8 @@ struct CurvePlace {
   friend auto operator<=>(const CurvePlace&, const CurvePlace&) = default;
 };
 
-/// The full wire's force as it is pushed through the store's travels. Dissipative wires are loaded to the end of the travel and unloaded.
+/// The full wire's force as it is pushed through the store's travels. Dissipative wires are loaded to the end
+/// of the travel and unloaded.
 struct PushedCurve {
   std::vector<double> loading;  ///< force [N], one a travel
   std::vector<double>
@@ -44,14 +45,15 @@ using JournalTrouble = std::function<void(const std::string& what)>;
 /// from the journal, and gives the same bytes, because numbers in it read back to the same doubles.
 class CurveStore {
  public:
-  /// travel: ascending from 0 [m]. journal: file to which finished curves are appended; none when empty. What it
-  /// holds of the same case and settings is used; a torn last line and curves of other cases are passed over.
+  /// travel: ascending from 0 [m]. journal: file to which finished curves are appended; none when empty. What
+  /// it holds of the same case and settings is used; a torn last line and curves of other cases are passed
+  /// over.
   /// trouble: is told once why the journal cannot be written; the curves are computed all the same.
   CurveStore(WireCase wire, const DistilSettings& settings, std::vector<double> travel,
              std::filesystem::path journal = {}, JournalTrouble trouble = {});
 
-  /// Solves those of the places that are not known yet, by OpenMP over curves. Not usable when the observer stopped it
-  /// or a curve did not reach the end of the travel; what was reached is kept.
+  /// Solves those of the places that are not known yet, by OpenMP over curves. Not usable when the observer
+  /// stopped it or a curve did not reach the end of the travel; what was reached is kept.
   [[nodiscard]] numerics::SolveReport sample(const std::vector<CurvePlace>& places,
                                              const SamplingObserver& observer = {});
 

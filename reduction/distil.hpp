@@ -54,8 +54,8 @@ struct Distillation {
   numerics::SolveReport report;      ///< not usable: the last case is missing
 };
 
-/// Distils every case of a wire file. journal: where finished curves are kept until the end; none when empty. trouble: see
-/// CurveStore; once a case at most.
+/// Distils every case of a wire file. journal: where finished curves are kept until the end; none when empty.
+/// trouble: see CurveStore; once a case at most.
 [[nodiscard]] Distillation distil(const WireFile& file, const std::filesystem::path& journal = {},
                                   const SamplingObserver& observer = {}, const JournalTrouble& trouble = {});
 

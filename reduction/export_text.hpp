@@ -25,14 +25,15 @@ using Replacements = std::vector<std::pair<std::string_view, std::string>>;
 /// "s40", "s52_5": a position [m], in mm, in a name that every language accepts.
 [[nodiscard]] std::string position_name(double position);
 
-/// Positions that a table answers without continuation [m]: its own, and their mirror image where left and right are alike.
+/// Positions that a table answers without continuation [m]: its own, and their mirror image where left and
+/// right are alike.
 [[nodiscard]] std::vector<Interval> covered_positions(const coupling::ForceTable& table);
 
 /// Lines that say what a file holds, without line breaks and control characters; the title first.
 [[nodiscard]] std::vector<std::string> head_lines(const DistilledCase& one, const std::string& title);
 
-/// What evaluating a table needs: span, scale, mirror (whether positions are mirrored: "1" or "0"), nd, ns, ne (numbers of knots), last
-/// (the last travel over the span).
+/// What evaluating a table needs: span, scale, mirror (whether positions are mirrored: "1" or "0"), nd, ns,
+/// ne (numbers of knots), last (the last travel over the span).
 [[nodiscard]] Replacements table_numbers(const coupling::ForceTable& table);
 
 /// A simple law of a case as an export writes it.

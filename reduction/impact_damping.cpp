@@ -20,8 +20,8 @@ constexpr double most_periods =
 constexpr int steps_a_half_period = 2000;
 constexpr int samples_a_half_period = 200;
 
-/// Half a period of the mass on the secant stiffness at the travel where the law has taken up its energy, the longest
-/// that counts [s].
+/// Half a period of the mass on the secant stiffness at the travel where the law has taken up its energy, the
+/// longest that counts [s].
 double half_period(const numerics::HermiteCurve& law, double mass, double speed) {
   const double energy = 0.5 * mass * speed * speed;
   const double end = law.knots().back();
@@ -122,8 +122,8 @@ coupling::Motion meeting(const coupling::PushProblem& test, const ImpactSettings
   return motion;
 }
 
-/// Adds the mirror image of the only wire, about the plane x = `position`, with a contact of its own: the body then feels
-/// no force across the push, as on a slide. Its mass has to be twice that on one wire.
+/// Adds the mirror image of the only wire, about the plane x = `position`, with a contact of its own: the
+/// body then feels no force across the push, as on a slide. Its mass has to be twice that on one wire.
 void add_mirror_image(coupling::Motion& motion, double position) {
   coupling::MotionWire image = motion.wires.front();
   image.name = "mirrored wire";

@@ -26,9 +26,8 @@ struct LawError {
 struct FittedLaw {
   coupling::LawFormPointer form;
   Eigen::VectorXd values;
-  /// sigma^2 (J^T J)^-1, sigma the rms misfit over points less numbers: how firmly the curve holds the numbers
-  /// of a form that
-  /// does not fit it exactly; there is no noise in it.
+  /// sigma^2 (J^T J)^-1, sigma the rms misfit over points less numbers: how firmly the curve holds the
+  /// numbers of a form that does not fit it exactly; there is no noise in it.
   Eigen::MatrixXd covariance;
   Interval range;  ///< of the travel [m]
   LawError error;
@@ -36,14 +35,14 @@ struct FittedLaw {
 
   /// The law with its range: never negative, linear beyond.
   [[nodiscard]] coupling::RangedLaw ranged() const { return {form->with(values), range.high}; }
-  /// Force and stiffness at a travel [m]. Without contact (travel < 0) both are 0. Beyond the range it throws std::domain_error or
-  /// continues linearly.
+  /// Force and stiffness at a travel [m]. Without contact (travel < 0) both are 0. Beyond the range it throws
+  /// std::domain_error or continues linearly.
   [[nodiscard]] coupling::LawValue at(double travel, coupling::Outside outside) const;
   [[nodiscard]] double energy(double travel) const;  ///< integral of the force from first touch [J]
 };
 
-/// Least squares of a form through points (travel ascending, >= 0) by Levenberg and Marquardt from the best guess. The
-/// error is taken at all other travels of `curve`, the full wire's.
+/// Least squares of a form through points (travel ascending, >= 0) by Levenberg and Marquardt from the best
+/// guess. The error is taken at all other travels of `curve`, the full wire's.
 /// fit_at: indices of the travels to fit.
 [[nodiscard]] FittedLaw fit_law(const coupling::LawFormPointer& form, const numerics::HermiteCurve& curve,
                                 const std::vector<std::size_t>& fit_at);

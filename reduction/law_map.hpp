@@ -23,12 +23,14 @@ struct LawMap {
   std::vector<double> travel;  ///< > 0 [m]
   std::vector<LawMapRow> rows;
 
-  /// Travels over which a law stays within a share of the full force, as the longest run of them; nothing when none.
+  /// Travels over which a law stays within a share of the full force, as the longest run of them; nothing
+  /// when none.
   [[nodiscard]] std::optional<Interval> within(const LawMapRow& row,
                                                const std::vector<double> LawMapRow::*law, double share) const;
 };
 
-/// Slacks from a pretension by a strain of 0.1 % to the largest slack of the case, elastic wire without friction.
+/// Slacks from a pretension by a strain of 0.1 % to the largest slack of the case, elastic wire without
+/// friction.
 [[nodiscard]] LawMap map_laws(const WireCase& wire, const DistilSettings& settings, int slacks, int travels);
 
 }  // namespace snare::reduction

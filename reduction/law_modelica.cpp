@@ -25,7 +25,8 @@ std::string in_quotes(const std::string& text) {
   return '"' + safe + '"';
 }
 
-// Every call has one result, and functions that are called for it assign and branch alone where they can: some readers know no more.
+// Every call has one result, and functions that are called for it assign and branch alone where they can:
+// some readers know no more.
 constexpr const char* modelica_helpers = R"(
   function pow "Power of a number that is not negative, as C writes it"
     input Real x;

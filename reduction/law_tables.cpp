@@ -30,7 +30,8 @@ std::vector<double> refined(const std::vector<double>& knots, int pieces) {
   return more;
 }
 
-/// Travels with two rows without contact before first touch and two of the linear continuation behind the end.
+/// Travels with two rows without contact before first touch and two of the linear continuation behind the
+/// end.
 std::vector<double> with_ends(const std::vector<double>& travel) {
   const double end = travel.back();
   std::vector<double> all{-end, -touch_width * travel[1]};
@@ -40,8 +41,8 @@ std::vector<double> with_ends(const std::vector<double>& travel) {
   return all;
 }
 
-/// Positions over the span: the knots and, where left and right are alike, their mirror image, refined; on either side the continuation up
-/// to the mounts.
+/// Positions over the span: the knots and, where left and right are alike, their mirror image, refined; on
+/// either side the continuation up to the mounts.
 std::vector<double> position_columns(const coupling::ForceTable& table, int pieces) {
   std::vector<double> knots = table.axes()[1];
   if (table.mirrored()) {
@@ -85,8 +86,8 @@ Grid grid_of(const coupling::ForceTable& table, double slack, int pieces) {
 /// Interpolation along the travel.
 enum class Along { linear, akima };
 
-/// Slopes of Akima's interpolation (Akima 1970): means of the secants on either side, weighted by how little the secants beyond them change;
-/// two secants more at either end, in arithmetic progression.
+/// Slopes of Akima's interpolation (Akima 1970): means of the secants on either side, weighted by how little
+/// the secants beyond them change; two secants more at either end, in arithmetic progression.
 std::vector<double> akima_slopes(const std::vector<double>& x, const std::vector<double>& y) {
   const std::size_t n = x.size();
   std::vector<double> m(n + 3);  // of the cell k at k + 2
@@ -121,7 +122,8 @@ std::vector<double> between(const std::vector<double>& travel, const std::vector
   return values;
 }
 
-/// Largest error of an interpolation of the grid, linear in the position, against the law, at four times four places in every cell [N].
+/// Largest error of an interpolation of the grid, linear in the position, against the law, at four times four
+/// places in every cell [N].
 double grid_error(const coupling::ForceTable& table, double slack, const Grid& grid, Along along) {
   double largest = 0.0;
   std::vector<double> left = between(grid.travel, grid.force.front(), along);
@@ -147,7 +149,8 @@ struct RefinedGrid {
   double error = 0.0;  ///< of the worst interpolation [N]
 };
 
-/// The coarsest grid that brings the interpolations within the stated bound of the table, or that with most_pieces.
+/// The coarsest grid that brings the interpolations within the stated bound of the table, or that with
+/// most_pieces.
 RefinedGrid refined_grid(const DistilledCase& one, const std::vector<Along>& interpolations) {
   const coupling::ForceTable& table = *one.table.loading;
   const double slack = one.wire.nominal_slack();

@@ -11,7 +11,8 @@
 
 namespace snare::reduction {
 
-/// One tendon with a dead band: F = k1 x + k2 x^2 + k3 x^3 over x = d - start, no force for x < 0.          theory.md (R.13)
+/// One tendon with a dead band: F = k1 x + k2 x^2 + k3 x^3 over x = d - start, no force for x < 0.
+///                                                                                           theory.md (R.13)
 struct MujocoSpring {
   double start = 0.0;                                   ///< travel at which it begins to act [m], >= 0
   Eigen::Vector3d stiffness = Eigen::Vector3d::Zero();  ///< k1, k2, k3 [N/m, N/m^2, N/m^3], of any sign

@@ -7,7 +7,7 @@
 
 namespace snare::reduction {
 
-/// One direction of the snared shaft: a linear spring beside a spring that slides.                theory.md (R.10)
+/// One direction of the snared shaft: a linear spring beside a spring that slides.           theory.md (R.10)
 ///   F = k u + p,   dp = q du, |p| <= f
 /// Dissipates 4 f (a - f/q) in a cycle of amplitude a > f/q.
 struct JointAxis {
@@ -47,7 +47,8 @@ struct JointCycle {
   numerics::SolveReport report;
 };
 
-/// Moves the shaft along an axis (0, 1, 2) by 0, a, -a, a in `steps` points a leg of length 2 a, and fits the joint. amplitude: a [m], > 0.
+/// Moves the shaft along an axis (0, 1, 2) by 0, a, -a, a in `steps` points a leg of length 2 a, and fits the
+/// joint. amplitude: a [m], > 0.
 [[nodiscard]] JointCycle cycle_snare(const coupling::SnareSpecification& snare, int axis, double amplitude,
                                      int steps);
 

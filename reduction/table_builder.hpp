@@ -24,8 +24,8 @@ struct TableError {
   double worst_travel = 0.0;       ///< [m]
 };
 
-/// A table's stated bound over the largest error found in the middles of its cells, where a cubic's error is largest:
-/// one half more, for what lies between.
+/// A table's stated bound over the largest error found in the middles of its cells, where a cubic's error is
+/// largest: one half more, for what lies between.
 inline constexpr double bound_factor = 1.5;
 
 /// A table with its error. `report` is not usable where the sampling ended early; then there is no table.
@@ -39,20 +39,21 @@ struct BuiltTable {
   numerics::SolveReport report;
 };
 
-/// Travels [m] at which curves are solved: evenly spread, four for every knot of the largest table; knots are taken from
-/// these and the others check them.
+/// Travels [m] at which curves are solved: evenly spread, four for every knot of the largest table; knots are
+/// taken from these and the others check them.
 [[nodiscard]] std::vector<double> sampling_travel(const WireCase& wire, const DistilSettings& settings);
 
 /// Places knots where a cubic spline through them errs most, along pilot lines through the range; solves the
 /// nodes; checks
 /// in the middle of every cell, of its faces and of its edges; adds knots while the bound is above the
 /// tolerance and the
-/// largest number of knots allows.                                                       theory.md (R.2)-(R.5)
+/// largest number of knots allows.                                                      theory.md (R.2)-(R.5)
 [[nodiscard]] BuiltTable build_table(CurveStore& store, const DistilSettings& settings,
                                      const SamplingObserver& observer = {});
 
-/// Knots, of any unit, for functions given on candidates: ends first, then one at a time where the spline through the knots is
-/// farthest from a function. lines: each as long as candidates. Returns ascending indices, `count` of them or all.
+/// Knots, of any unit, for functions given on candidates: ends first, then one at a time where the spline
+/// through the knots is farthest from a function. lines: each as long as candidates. Returns ascending
+/// indices, `count` of them or all.
 [[nodiscard]] std::vector<std::size_t> place_knots(const std::vector<double>& candidates,
                                                    const std::vector<std::vector<double>>& lines,
                                                    std::size_t count);

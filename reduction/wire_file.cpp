@@ -274,8 +274,8 @@ bool WireCase::dissipates() const noexcept {
 double default_travel(const coupling::PushProblem& test) {
   const double span = test.mount.span;
   const double slack = test.wire.length - span;
-  // Height of two straight pieces of a wire of this length, and of the shallow buckled shape (the first mode: its
-  // shortening is pi^2 h^2/(4 span) between clamps and between pins).
+  // Height of two straight pieces of a wire of this length, and of the shallow buckled shape (the first mode:
+  // its shortening is pi^2 h^2/(4 span) between clamps and between pins).
   const auto taut = [&](double length) {
     return 0.5 * std::sqrt(std::max(0.0, length * length - span * span));
   };

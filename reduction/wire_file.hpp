@@ -63,12 +63,14 @@ struct WireFile {
   std::string export_name;  ///< what keeps exports apart: namespace, prefix, package; empty: none
 };
 
-/// Travel from first touch at which the wire, taken as two straight pieces at mid-span, is stretched by the strain that
-/// metals bear elastically (0.2 %, the usual proof strain): the default end of the travel [m].  theory.md (R.1)
+/// Travel from first touch at which the wire, taken as two straight pieces at mid-span, is stretched by the
+/// strain that
+/// metals bear elastically (0.2 %, the usual proof strain): the default end of the travel [m].
+///                                                                                            theory.md (R.1)
 [[nodiscard]] double default_travel(const coupling::PushProblem& test);
 
-/// Reads and checks a wire file: keys, units, ranges and defaults in docs/wire_file.md. Throws base::InputError with
-/// every problem found (file, line, key, value, what is allowed).
+/// Reads and checks a wire file: keys, units, ranges and defaults in docs/wire_file.md. Throws
+/// base::InputError with every problem found (file, line, key, value, what is allowed).
 [[nodiscard]] WireFile read_wire_file(const std::filesystem::path& file,
                                       const std::vector<base::Override>& overrides = {});
 [[nodiscard]] WireFile parse_wire_file(const std::filesystem::path& file, std::string_view text,

@@ -63,7 +63,8 @@ std::string identity_of(const BenchmarkCase& c) {
 
 constexpr std::size_t longest_history = std::size_t{1} << 30u;  // [byte]
 
-/// Fingerprint of the text of an archived history, byte by byte: its JSON file belongs to this history and to no other.
+/// Fingerprint of the text of an archived history, byte by byte: its JSON file belongs to this history and to
+/// no other.
 std::string fingerprint_of(const std::string& history) {
   return fmt::format("{:016x}", base::fingerprint(history));
 }
@@ -75,7 +76,8 @@ const std::vector<double>& numbers_of(const History& history, const std::string&
   return found != history.columns.end() ? found->numbers : none;
 }
 
-/// What the integration has made or lost, over the most that moved and was stretched at a time; none where the history does not say.
+/// What the integration has made or lost, over the most that moved and was stretched at a time; none where
+/// the history does not say.
 std::optional<double> energy_error(const History& history) {
   const std::vector<double>&error = numbers_of(history, "integrator_J"),
         &kinetic = numbers_of(history, "kinetic_J"), &strain = numbers_of(history, "strain_J");
@@ -148,7 +150,8 @@ ModelRun run_model(const BenchmarkCase& c, const BenchmarkModel& model, const Wa
   return r;
 }
 
-/// The largest explicit step at the time that the case names; none where the model has too many unknowns, or has stopped before.
+/// The largest explicit step at the time that the case names; none where the model has too many unknowns, or
+/// has stopped before.
 std::optional<double> largest_step(const BenchmarkCase& c, const BenchmarkModel& model, const Watch& watch) {
   std::vector<base::Override> until = all_fixed(c, model);
   until.push_back({"duration_s", fmt::format("{}", *c.step_at)});

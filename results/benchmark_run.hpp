@@ -47,14 +47,16 @@ struct BenchmarkAnswer {
   std::vector<BenchmarkRow> rows;
 };
 
-/// Reads what all models of a case would read. Throws base::InputError where one cannot be run, or has no such columns.
+/// Reads what all models of a case would read. Throws base::InputError where one cannot be run, or has no
+/// such columns.
 void check_benchmark_case(const study::BenchmarkFile& benchmark, const study::BenchmarkCase& c);
 
 /// The archive of a case. Throws base::InputError where there is none, or where it is damaged.
 [[nodiscard]] BenchmarkReference read_reference(const study::BenchmarkFile& benchmark,
                                                 const study::BenchmarkCase& c);
 
-/// Runs the refinements of a case and writes the archive: NAME.csv and NAME.json. Says why where one does not end.
+/// Runs the refinements of a case and writes the archive: NAME.csv and NAME.json. Says why where one does not
+/// end.
 [[nodiscard]] CaseEnd archive_case(const study::BenchmarkFile& benchmark, const study::BenchmarkCase& c,
                                    const Watch& watch);
 

@@ -41,7 +41,8 @@ CaseEnd ending(bool usable, numerics::Termination termination, const std::string
   return {termination == numerics::Termination::interrupted ? Status::stopped : Status::failed, message};
 }
 
-/// Whether a run that ended so has come somewhere by itself: what a signal or a limit of time has cut off depends on the machine.
+/// Whether a run that ended so has come somewhere by itself: what a signal or a limit of time has cut off
+/// depends on the machine.
 bool keeps_history(const CaseEnd& end) {
   return end.status == Status::done || end.status == Status::failed;
 }

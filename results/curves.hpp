@@ -9,8 +9,8 @@
 
 namespace snare::results {
 
-/// A further column of curves.csv: one vector a series, aligned with the series' displacements; cells beyond the
-/// end of a vector stay empty.
+/// A further column of curves.csv: one vector a series, aligned with the series' displacements; cells beyond
+/// the end of a vector stay empty.
 struct CurveColumn {
   std::string name;
   std::vector<std::vector<double>> values;

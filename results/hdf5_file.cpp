@@ -16,7 +16,8 @@
 #include <string_view>
 #include <system_error>
 
-// Constants of the header first call the library, by symbols that a program must be linked with; it is open before they are used here.
+// Constants of the header first call the library, by symbols that a program must be linked with; it is open
+// before they are used here.
 #undef H5CHECK
 #define H5CHECK
 #undef H5OPEN
@@ -335,7 +336,8 @@ Hdf5Writer::Hdf5Writer(const std::filesystem::path& file, std::filesystem::path 
   library_->shown = std::move(shown);
   library_->named([&] {
     const Handle access = properties("H5P_CLS_FILE_ACCESS_ID_g");
-    // The root group is one of the first format, as that of the later one keeps its times whatever is asked (1.10).
+    // The root group is one of the first format, as that of the later one keeps its times whatever is asked
+    // (1.10).
     check(api.H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));
     // File systems of clusters may have no locks; ours is that of the folder.
     check(api.H5Pset_file_locking(access, 0, 1));
@@ -343,7 +345,8 @@ Hdf5Writer::Hdf5Writer(const std::filesystem::path& file, std::filesystem::path 
     check(api.H5Pset_istore_k(made, tree_of_chunks));
     check(api.H5Pset_userblock(made, seal_size));
     library_->file.emplace(api.H5Fcreate(file.c_str(), H5F_ACC_TRUNC, made, access), api.H5Fclose);
-    // Groups in it are of the kind that needs no room while they are small; every reader since 2008 knows them.
+    // Groups in it are of the kind that needs no room while they are small; every reader since 2008 knows
+    // them.
     check(api.H5Fset_libver_bounds(*library_->file, H5F_LIBVER_V18, H5F_LIBVER_V18));
   });
 }

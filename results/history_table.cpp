@@ -14,7 +14,8 @@ namespace snare::results {
 
 namespace {
 
-/// Ends of names that are units, and how the unit is written; a longer one stands before those that it ends in.
+/// Ends of names that are units, and how the unit is written; a longer one stands before those that it ends
+/// in.
 constexpr std::pair<std::string_view, std::string_view> endings[] = {
     {"rad_s", "rad/s"}, {"deg_s", "deg/s"}, {"m_s2", "m/s^2"}, {"mm_s", "mm/s"}, {"m_s", "m/s"},
     {"N_mm", "N/mm"},   {"N_m", "N/m"},     {"Nms", "N m s"},  {"Nm", "N m"},    {"Ns", "N s"},

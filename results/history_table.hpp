@@ -33,8 +33,9 @@ void fields(Archive& archive, History& history) {
 /// Takes some columns and rows of a table of results.
 class HistoryTable final : public TableSink {
  public:
-  /// columns: by name, in the order in which they are kept; none: all. every: of so many rows the first is kept, counted anew where the
-  /// first cell is another text than before: of a run or a series that follows another.
+  /// columns: by name, in the order in which they are kept; none: all. every: of so many rows the first is
+  /// kept, counted anew where the first cell is another text than before: of a run or a series that follows
+  /// another.
   HistoryTable(std::vector<std::string> columns, int every) : wanted_(std::move(columns)), every_(every) {}
 
   void begin(std::vector<std::string> names) override;
@@ -58,7 +59,8 @@ class HistoryTable final : public TableSink {
   History history_;
 };
 
-/// The unit that the name of a column ends in, as it is written: "m/s" of "body_vx_m_s"; empty where it ends in none.
+/// The unit that the name of a column ends in, as it is written: "m/s" of "body_vx_m_s"; empty where it ends
+/// in none.
 [[nodiscard]] std::string unit_of_column(const std::string& name);
 
 }  // namespace snare::results

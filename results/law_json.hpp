@@ -6,7 +6,8 @@
 
 namespace snare::results {
 
-/// law.json: ranges, table, simple laws with their errors, the map of the closed forms, warnings. Fields: docs/law_json.md.
+/// law.json: ranges, table, simple laws with their errors, the map of the closed forms, warnings. Fields:
+/// docs/law_json.md.
 [[nodiscard]] nlohmann::json law_json(const reduction::WireFile& file,
                                       const reduction::Distillation& distillation);
 

@@ -24,7 +24,8 @@ json relative(double value, double reference) {
   return reference != 0.0 ? json(value / reference - 1.0) : json();
 }
 
-/// Differences of an outcome from that of the full wire: relative ones of forces, impulses and tensions, those of times [s].
+/// Differences of an outcome from that of the full wire: relative ones of forces, impulses and tensions,
+/// those of times [s].
 json differences(const json& outcome, const json& reference) {
   json result = json::object();
   for (const char* key : {"peak_force_N", "peak_tension_N"}) {

@@ -8,8 +8,9 @@
 
 namespace snare::results {
 
-/// The table of history.csv, a line a sample: columns for every body, contact, joint, wire and bushing, by their names; energies.
-///                                                                                                docs/scenario_file.md
+/// The table of history.csv, a line a sample: columns for every body, contact, joint, wire and bushing, by
+/// their names; energies.
+///                                                                                      docs/scenario_file.md
 void give_history(TableSink& sink, const coupling::Motion& motion,
                   const std::vector<coupling::MotionSample>& samples);
 

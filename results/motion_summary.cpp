@@ -217,7 +217,8 @@ json peak_torques(const FinishedMotion& run) {
   return all;
 }
 
-/// Small oscillations about the end, each with the error of the mesh, estimated by the same motion on a coarser one.
+/// Small oscillations about the end, each with the error of the mesh, estimated by the same motion on a
+/// coarser one.
 coupling::SmallMotions small_motions(const scenario::WireMotions& motions, const FinishedMotion& run,
                                      const std::function<bool()>& stop) {
   coupling::MotionOptions options = run.asked.options;
@@ -233,7 +234,8 @@ coupling::SmallMotions small_motions(const scenario::WireMotions& motions, const
   return small;
 }
 
-/// The small oscillations, and by what moves the frequency of that in which it has the largest share, of those that the mesh resolves.
+/// The small oscillations, and by what moves the frequency of that in which it has the largest share, of
+/// those that the mesh resolves.
 json modes_json(const coupling::SmallMotions& small) {
   json list = json::array(), frequencies = json::object();
   std::map<std::string, double> largest;

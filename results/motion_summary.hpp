@@ -10,8 +10,9 @@
 
 namespace snare::results {
 
-/// summary.json of a motion. stop: asked while the modes of a coarser mesh are looked for, where they were asked for; true: they are left
-/// out.                                                                                       docs/summary_json.md
+/// summary.json of a motion. stop: asked while the modes of a coarser mesh are looked for, where they were
+/// asked for; true: they are left out.
+/// docs/summary_json.md
 [[nodiscard]] nlohmann::json motion_summary(const scenario::Scenario& asked, const FinishedMotion& finished,
                                             const std::function<bool()>& stop = {});
 

@@ -127,7 +127,8 @@ std::string members_of(const Family& family) {
   return fmt::format("{}", fmt::join(all, ", "));
 }
 
-/// Ranges and numbers of readings that most of the probability of a family rests on: "5.2 to 16 mm and 6 to 45 readings".
+/// Ranges and numbers of readings that most of the probability of a family rests on: "5.2 to 16 mm and 6 to
+/// 45 readings".
 std::string region_of(const json& map) {
   const json& region = map["region"];
   return fmt::format("{:.2g} to {:.2g} mm and {} to {} readings", region["range_mm"][0].get<double>(),
@@ -135,7 +136,8 @@ std::string region_of(const json& map) {
                      region["readings"][1].get<int>());
 }
 
-/// The value below which a share of the weights lies. pairs: of a value and its weight, in any order, not empty.
+/// The value below which a share of the weights lies. pairs: of a value and its weight, in any order, not
+/// empty.
 double quantile(std::vector<std::pair<double, double>> pairs, double share) {
   std::ranges::sort(pairs);
   double all = 0.0, below = 0.0;
@@ -147,7 +149,8 @@ double quantile(std::vector<std::pair<double, double>> pairs, double share) {
   return pairs.back().first;
 }
 
-/// By how much more than declared wire and mounts give along the wire: median and the wider of the intervals of both priors.
+/// By how much more than declared wire and mounts give along the wire: median and the wider of the intervals
+/// of both priors.
 json compliance_of(const Experiment& experiment, const std::vector<HypothesisMap>& maps) {
   double largest = -std::numeric_limits<double>::infinity();
   for (const HypothesisMap& m : maps) largest = std::max({largest, m.log_evidence[0], m.log_evidence[1]});
@@ -168,7 +171,8 @@ json compliance_of(const Experiment& experiment, const std::vector<HypothesisMap
   return {{"more_compliance_um_N", {{"median", median}, {"lower95", lower}, {"upper95", upper}}}};
 }
 
-/// Where the probability of a family lies: shares of the kinds of ranges, and 95 % of the common ranges and of the numbers of readings.
+/// Where the probability of a family lies: shares of the kinds of ranges, and 95 % of the common ranges and
+/// of the numbers of readings.
 json region_json(const FitRanges& ranges, const std::vector<HypothesisMap>& maps, const std::string& family) {
   double largest = -std::numeric_limits<double>::infinity();
   for (const HypothesisMap& m : maps) largest = std::max(largest, m.log_evidence[0]);

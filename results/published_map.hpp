@@ -10,19 +10,20 @@
 
 namespace snare::results {
 
-/// What the published fits of an experiment rest on, as a name of the map that belongs to them: wire, mounts, pusher and printed numbers,
-/// without the assumed range, and the hypotheses that are weighed.
+/// What the published fits of an experiment rest on, as a name of the map that belongs to them: wire, mounts,
+/// pusher and printed numbers, without the assumed range, and the hypotheses that are weighed.
 [[nodiscard]] std::string published_inputs(const identification::Experiment& experiment);
 
-/// A map of hypotheses about published fits, schema snare-published-map/1. p: of a hypothesis by published_p [-], none where
-/// it was not asked.
+/// A map of hypotheses about published fits, schema snare-published-map/1. p: of a hypothesis by published_p
+/// [-], none where it was not asked.
 [[nodiscard]] nlohmann::json published_map_json(const identification::Experiment& experiment,
                                                 const identification::FitRanges& ranges,
                                                 const std::vector<identification::HypothesisMap>& maps,
                                                 const std::vector<std::optional<double>>& p, bool coarse);
 
-/// How sure an answer is. A family of hypotheses is explained where it has 0.95 under both priors of the range and its leading member
-/// P >= 0.05; most likely from 0.5 under both; none of these where every known P is below 0.01; else the fits cannot tell.
+/// How sure an answer is. A family of hypotheses is explained where it has 0.95 under both priors of the
+/// range and its leading member P >= 0.05; most likely from 0.5 under both; none of these where every known P
+/// is below 0.01; else the fits cannot tell.
 enum class PublishedAnswer { explained, most_likely, none_of_these, cannot_tell };
 [[nodiscard]] std::string to_string(PublishedAnswer answer);
 

@@ -19,8 +19,8 @@ struct PushResult {
   [[nodiscard]] bool complete() const;
 };
 
-/// The force-displacement curves of every series. A series that could not be followed to its end keeps what was reached; why is
-/// under "stopped" of it.
+/// The force-displacement curves of every series. A series that could not be followed to its end keeps what
+/// was reached; why is under "stopped" of it.
 [[nodiscard]] PushResult push(const identification::Experiment& experiment, const Watch& watch = {});
 
 }  // namespace snare::results

@@ -14,7 +14,8 @@ namespace snare::results {
 [[nodiscard]] nlohmann::json record_fit_json(const identification::RecordSet& set,
                                              const identification::RecordTrace& trace);
 
-/// The columns of curves.csv: every reading of every channel beside what the declared, the base and the final model say.
+/// The columns of curves.csv: every reading of every channel beside what the declared, the base and the final
+/// model say.
 void give_record_curves(TableSink& sink, const identification::RecordSet& set,
                         const identification::RecordTrace& trace);
 

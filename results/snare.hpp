@@ -18,10 +18,11 @@
 ///   #include <snare/snare.hpp>
 ///   nlohmann::json pushed = snare::push("my_push.toml", {{"pusher.friction", "0.2"}});
 ///
-/// Each gives the document that the command writes as JSON, with the units in the names, and writes nothing. Overrides are keys of the
-/// file with values in TOML, as `--set` takes them. watch: who is told what is under way, and may stop it. Throws base::InputError for
-/// a wrong file, with every problem found, and SolverStopped where a computation did not come to its end. Calls share nothing: any number
-/// may run at a time.
+/// Each gives the document that the command writes as JSON, with the units in the names, and writes nothing.
+/// Overrides are keys of the file with values in TOML, as `--set` takes them. watch: who is told what is
+/// under way, and may stop it. Throws base::InputError for a wrong file, with every problem found, and
+/// SolverStopped where a computation did not come to its end. Calls share nothing: any number may run at a
+/// time.
 namespace snare {
 
 using Overrides = std::vector<base::Override>;

@@ -19,8 +19,8 @@ struct StaticComparison {
   reduction::DistilSettings settings;
 };
 
-/// Every series of an experiment file with its readings or its published law, or every position of a wire file at its
-/// nominal slack. Throws base::InputError.
+/// Every series of an experiment file with its readings or its published law, or every position of a wire
+/// file at its nominal slack. Throws base::InputError.
 [[nodiscard]] StaticComparison read_static_comparison(const std::filesystem::path& file,
                                                       const std::vector<base::Override>& overrides = {});
 

@@ -95,7 +95,8 @@ struct SweepAnswers {
   [[nodiscard]] std::uint64_t inferred() const;  ///< cases of a refined grid that were not run
 };
 
-/// Number of a variable in a case, in the unit of its key, as it stands in tables: levels that are texts have none.
+/// Number of a variable in a case, in the unit of its key, as it stands in tables: levels that are texts have
+/// none.
 [[nodiscard]] std::optional<double> shown_number(const study::Variable& variable, double value);
 
 /// Values of a case, in the units of their keys: of the design, or of its record.

@@ -52,7 +52,8 @@ Hdf5Value shown_value(const study::Variable& variable, double value) {
   return level.is_string() ? level.get<std::string>() : literal;
 }
 
-/// Temporary files that a process has left which was killed while it wrote `name`, or anything where that is empty.
+/// Temporary files that a process has left which was killed while it wrote `name`, or anything where that is
+/// empty.
 void remove_unfinished(const fs::path& folder, const std::string& name) {
   std::error_code code;
   std::vector<fs::path> left;

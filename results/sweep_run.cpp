@@ -110,7 +110,8 @@ class SweepRun {
     if (const auto line = before_ > 0 ? journal_.result(0) : std::nullopt; line) any_done_ = true;
   }
 
-  /// How many cases there are as far as is known; where one of an earlier round is run again the journal has more.
+  /// How many cases there are as far as is known; where one of an earlier round is run again the journal has
+  /// more.
   void expect(std::uint64_t cases) { total_ = std::max(cases, journal_.finished()); }
 
   /// Those of the design's cases that are wanted; `cases`: there are with all before.

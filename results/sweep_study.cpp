@@ -41,8 +41,9 @@ void check_histories(const study::SweepFile& sweep, const CaseRunner& runner,
   if (!problems.empty()) throw base::InputError(std::move(problems));
 }
 
-/// Whether any of a few cases, spread over all, is one that its reader takes; else what the first is refused for. A key that does not
-/// exist is so found before anything runs, and a range of which a part is not allowed is none. Returns the columns of that case's history.
+/// Whether any of a few cases, spread over all, is one that its reader takes; else what the first is refused
+/// for. A key that does not exist is so found before anything runs, and a range of which a part is not
+/// allowed is none. Returns the columns of that case's history.
 std::vector<std::string> check_some(const study::SweepFile& sweep, const CaseRunner& runner) {
   const std::uint64_t count = sweep.design.count();
   std::set<std::uint64_t> some;

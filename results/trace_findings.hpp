@@ -15,8 +15,8 @@ namespace snare::results {
 /// Mean standard deviation of a fitted reading [N]; none before the noise is known.
 [[nodiscard]] std::optional<double> reading_noise(const identification::Trace& trace);
 
-/// Root mean square distance [N] of a model's forces from the published law that the readings of series k were
-/// drawn about; none for a series without one or that the model has not reached.
+/// Root mean square distance [N] of a model's forces from the published law that the readings of series k
+/// were drawn about; none for a series without one or that the model has not reached.
 [[nodiscard]] std::optional<double> law_distance(const identification::Trace& trace, std::size_t k,
                                                  const std::vector<identification::Prediction>& model);
 

@@ -27,7 +27,8 @@ namespace snare::results {
 /// The columns `base_N` and `final_N` that curves.csv has after a trace or a fit.
 [[nodiscard]] std::vector<CurveColumn> curve_columns(const identification::Trace& trace);
 
-/// "wire.length_mm": {"value", "stderr", "declared", "unit", "lower95", "upper95", "profiled", "averaged"}, ... of fitted numbers.
+/// "wire.length_mm": {"value", "stderr", "declared", "unit", "lower95", "upper95", "profiled", "averaged"},
+/// ... of fitted numbers.
 [[nodiscard]] nlohmann::json numbers_json(const std::vector<identification::FittedNumber>& numbers);
 
 }  // namespace snare::results

@@ -33,7 +33,8 @@ class Sentences {
   std::vector<std::string> all_;
 };
 
-/// Warns of a wire that leaves the pusher as the pusher moves on. A pusher that is drawn back leaves the wire as it should.
+/// Warns of a wire that leaves the pusher as the pusher moves on. A pusher that is drawn back leaves the wire
+/// as it should.
 std::vector<std::string> lost_contact(const std::vector<PushPoint>& points) {
   if (points.empty() || points.back().in_contact) return {};
   const auto last =
@@ -44,7 +45,8 @@ std::vector<std::string> lost_contact(const std::vector<PushPoint>& points) {
                       1e3 * last->travel)};
 }
 
-/// Warns of points on a branch that a wire which is free to move leaves, from the bifurcation on where there is one.
+/// Warns of points on a branch that a wire which is free to move leaves, from the bifurcation on where there
+/// is one.
 std::vector<std::string> unstable_branch(const coupling::PushCurve& curve) {
   const auto unstable = [](const PushPoint& p) { return p.converged && p.unstable_modes > 0; };
   const auto first = std::find_if(curve.points.begin(), curve.points.end(), unstable);
@@ -60,7 +62,8 @@ std::vector<std::string> unstable_branch(const coupling::PushCurve& curve) {
       1e3 * begin, 1e3 * last->travel)};
 }
 
-/// Warns of a stress above the strength of every wire, of the series where it is largest; the others are named.
+/// Warns of a stress above the strength of every wire, of the series where it is largest; the others are
+/// named.
 std::vector<std::string> overload_of(const std::vector<identification::Series>& series,
                                      const std::vector<identification::Prediction>& predictions) {
   std::vector<std::pair<double, std::size_t>> over;  // stress and series
@@ -121,9 +124,10 @@ std::vector<std::string> wire_warnings(const reduction::WireFile& file) {
 
 namespace {
 
-/// Reports an error of the energy balance beyond 1 % of the energy exchanged: the largest change of kinetic, elastic or potential energy, of
-/// dissipated energy or of work. Where less is exchanged than the default tolerance of places resolves to 1 % against the largest force, as by a
-/// body that settles to rest, it reports nothing.
+/// Reports an error of the energy balance beyond 1 % of the energy exchanged: the largest change of kinetic,
+/// elastic or potential energy, of dissipated energy or of work. Where less is exchanged than the default
+/// tolerance of places resolves to 1 % against the largest force, as by a body that settles to rest, it
+/// reports nothing.
 std::vector<std::string> energy_doubts(const FinishedMotion& run) {
   constexpr double most = 0.01;
   const std::vector<coupling::MotionSample>& samples = run.samples;

@@ -9,9 +9,9 @@
 
 namespace snare::results {
 
-/// What is doubtful about results that were computed as asked, one sentence each: wires that cannot be or would have broken, pushers
-/// that the wire has left, blows beyond what a wire survives. Limits and their sources: theory.md (W.35).
-/// `of`: whose results they are, before each sentence; may be empty.
+/// What is doubtful about results that were computed as asked, one sentence each: wires that cannot be or
+/// would have broken, pushers that the wire has left, blows beyond what a wire survives. Limits and their
+/// sources: theory.md (W.35). `of`: whose results they are, before each sentence; may be empty.
 [[nodiscard]] std::vector<std::string> push_warnings(
     const std::vector<identification::Series>& series,
     const std::vector<identification::Prediction>& predictions, const std::string& of = "");

@@ -55,7 +55,8 @@ Stand read_stand(const TomlTable& table) {
   return stand;
 }
 
-/// `rates_deg_s`: of links and motors alike at the start; `deflections_deg`: of links before their motors. One a joint, of which there are `count`.
+/// `rates_deg_s`: of links and motors alike at the start; `deflections_deg`: of links before their motors.
+/// One a joint, of which there are `count`.
 void start_motion(const TomlTable& table, std::size_t count, coupling::MotionArm& arm) {
   const auto read = [&](const char* key, double most) {
     const std::vector<double> none;

@@ -9,16 +9,16 @@
 
 namespace snare::scenario {
 
-/// The step test of one joint (Abiko et al., sec. 3.1): its motor jumps by `step` at the start and is then held by
-/// its brake,
-/// the other motors are locked; the link, at rest, finds its spring wound up by -step and swings.        theory.md
-/// (A.17)
+/// The step test of one joint (Abiko et al., sec. 3.1): its motor jumps by `step` at the start and is then
+/// held by its brake, the other motors are locked; the link, at rest, finds its spring wound up by -step and
+/// swings.                                                                                   theory.md (A.17)
 /// joint: index; step [rad].
 [[nodiscard]] multibody::ArmScenario joint_step(const multibody::ArmDescription& description,
                                                 const Eigen::VectorXd& angles, int joint, double step,
                                                 double end);
 
-/// The same with the motor driven by its servo to the new angle, as a command would. angles and step [rad], end [s].
+/// The same with the motor driven by its servo to the new angle, as a command would. angles and step [rad],
+/// end [s].
 [[nodiscard]] multibody::ArmScenario commanded_step(const multibody::ArmDescription& description,
                                                     const Eigen::VectorXd& angles, int joint, double step,
                                                     double end);

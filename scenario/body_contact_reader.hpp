@@ -4,7 +4,8 @@
 
 namespace snare::scenario {
 
-/// A shape of the list and the wires that laws stand for, of those with these indices: it becomes their shaft.
+/// A shape of the list and the wires that laws stand for, of those with these indices: it becomes their
+/// shaft.
 void set_shaft(Composition& composition, const std::string& name, const PlacedShape& shape,
                const coupling::MotionFriction& friction, const std::vector<int>& on);
 /// What must be so behind all shapes.

@@ -260,8 +260,8 @@ void require_before(const coupling::LawWire& wire) {
                             fmt::format("{}", -depth), "must be >= 0 m at the start"});
 }
 
-/// Laws of pushes know their wire at rest. One may be without force over the first part of its travel: steps are limited to a tenth of a
-/// millimetre at the speed of the start, so that none leaps over the rest.
+/// Laws of pushes know their wire at rest. One may be without force over the first part of its travel: steps
+/// are limited to a tenth of a millimetre at the speed of the start, so that none leaps over the rest.
 void complete_pushes(Composition& c, coupling::MotionOptions& options) {
   std::size_t next = 0;
   for (const DeclaredWire& w : c.wires) {

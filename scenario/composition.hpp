@@ -61,15 +61,17 @@ struct Composition {
   [[nodiscard]] const MotorJoint* joint(const base::TomlTable& table, std::string_view key) const;
   /// Where results count a wire, by where it is declared: those that laws stand for behind the others.
   [[nodiscard]] int counted(int declared) const;
-  /// Indices of the contact and of the wire under a key, as results count them; 0 where there is none, which is reported.
+  /// Indices of the contact and of the wire under a key, as results count them; 0 where there is none, which
+  /// is reported.
   [[nodiscard]] int contact(const base::TomlTable& table, std::string_view key) const;
   [[nodiscard]] int contact(const base::TomlTable& table, std::string_view key,
                             const std::string& name) const;
   [[nodiscard]] int wire(const base::TomlTable& table, std::string_view key) const;
-  /// A body on which a shape or a weld may sit where a frame is: that of the frame, a light one of this mass [kg] welded to an arm's, or one at
-  /// rest.
+  /// A body on which a shape or a weld may sit where a frame is: that of the frame, a light one of this mass
+  /// [kg] welded to an arm's, or one at rest.
   int body_on(const PlacedFrame& frame, const std::string& name, double mass);
-  /// Adds a shape on its frame, in contact with the declared wires of these indices, but for those that laws stand for. mass [kg]: as of body_on.
+  /// Adds a shape on its frame, in contact with the declared wires of these indices, but for those that laws
+  /// stand for. mass [kg]: as of body_on.
   void add_shape(const std::string& name, const coupling::MotionContact& shape, const PlacedFrame& frame,
                  double mass, const std::vector<int>& on);
 };

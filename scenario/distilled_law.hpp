@@ -26,8 +26,8 @@ struct SimpleLaw {
   coupling::SpringLawPointer law;  ///< never negative, linear beyond these travels
 };
 
-/// The law of this name at a place with numbers in the order of its form's parameters, over the travels up to `end` [m]; its name must be
-/// known, and the numbers as many as its parameters.
+/// The law of this name at a place with numbers in the order of its form's parameters, over the travels up to
+/// `end` [m]; its name must be known, and the numbers as many as its parameters.
 [[nodiscard]] SimpleLaw make_simple_law(const std::string& name, const coupling::LawPlace& place,
                                         std::vector<double> values, std::array<double, 2> travel);
 /// The parameters of the law of this name; none where no law has it.
@@ -77,11 +77,11 @@ struct DistilledLaw {
   std::vector<DistilledLoss> losses;  ///< one a law position, in the order of the file
   DistilledWire wire;
 
-  /// Whether the force at travel d, position s and slack e [m] needs no continuation: within the range of the table, to 1e-9 of the span, or
-  /// without contact (d < 0).
+  /// Whether the force at travel d, position s and slack e [m] needs no continuation: within the range of the
+  /// table, to 1e-9 of the span, or without contact (d < 0).
   [[nodiscard]] bool in_range(double d, double s, double e) const noexcept;
-  /// Force and stiffness at travel d, position s and slack e [m] of `table`, one of the two above: ForceTable::at. Throws
-  /// std::domain_error as that does, and for a number that is not finite.
+  /// Force and stiffness at travel d, position s and slack e [m] of `table`, one of the two above:
+  /// ForceTable::at. Throws std::domain_error as that does, and for a number that is not finite.
   [[nodiscard]] static coupling::LawValue at(const coupling::ForceTable& table, double d, double s, double e,
                                              coupling::Outside outside);
   /// The same force [N] in half the time.

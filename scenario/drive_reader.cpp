@@ -38,7 +38,8 @@ constexpr Units of_lengths{"to_mm",           "by_mm",   "rate_mm_s",   "proport
 
 using CourseMaker = std::function<Course(double time, double from)>;
 
-/// Mean about one row with the weights of a raised cosine that ends a half width of time away, and no farther than the rows go on both sides.
+/// Mean about one row with the weights of a raised cosine that ends a half width of time away, and no farther
+/// than the rows go on both sides.
 double smoothed(const std::vector<double>& times, const std::vector<double>& values, std::size_t row,
                 double half_width) {
   const double width = std::min({half_width, times[row] - times.front(), times.back() - times[row]});
@@ -54,7 +55,8 @@ double smoothed(const std::vector<double>& times, const std::vector<double>& val
   return sum / weights;
 }
 
-/// A course from a CSV of `time_s` and the position, counted from where the motor is when it begins, or from its zero.
+/// A course from a CSV of `time_s` and the position, counted from where the motor is when it begins, or from
+/// its zero.
 CourseMaker table_course(const TomlTable& table, const std::filesystem::path& folder, const Units& u,
                          std::string& input) {
   const std::string name = table.text("course_file");

@@ -9,8 +9,9 @@ namespace snare::scenario {
 /// A drive from a time on, of a motor that then stands at an angle.
 using DriveMaker = std::function<multibody::Drive(double time, double angle)>;
 
-/// `mode` and what belongs to it, of a table of `[[drives]]` or of a phase: docs/scenario_file.md. as_described: the drive of the
-/// arm's own file, whose gains stand where the table gives none. slides: lengths in place of angles.
+/// `mode` and what belongs to it, of a table of `[[drives]]` or of a phase: docs/scenario_file.md.
+/// as_described: the drive of the arm's own file, whose gains stand where the table gives none. slides:
+/// lengths in place of angles.
 [[nodiscard]] DriveMaker read_drive(const base::TomlTable& table, const std::filesystem::path& folder,
                                     const multibody::Drive& as_described, bool slides, std::string& input);
 

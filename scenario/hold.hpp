@@ -17,7 +17,8 @@ enum class Hold { as_described, limp, locked };
 inline constexpr base::Choice<Hold> holds[] = {
     {"as_described", Hold::as_described}, {"limp", Hold::limp}, {"locked", Hold::locked}};
 
-/// Drives that stand at these angles of the arm's joints [rad], one a drive. Links bend about hinges that stay as they are.
+/// Drives that stand at these angles of the arm's joints [rad], one a drive. Links bend about hinges that
+/// stay as they are.
 inline void hold(Hold how, const Eigen::VectorXd& angles, const multibody::ElasticArm& arm,
                  std::vector<multibody::Drive>& drives) {
   for (int k = 0; k < static_cast<int>(drives.size()); ++k) {

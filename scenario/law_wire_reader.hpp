@@ -19,7 +19,8 @@ struct WireStandIn {
   std::optional<PushModel> push = {};  ///< of a law of pushes, which its place and shaft complete
 };
 
-/// Of a wire's table; the tables of laws' numbers are read whatever the model is. beside: of a wire that laws of pushes may stand for.
+/// Of a wire's table; the tables of laws' numbers are read whatever the model is. beside: of a wire that laws
+/// of pushes may stand for.
 [[nodiscard]] WireStandIn read_wire_stand_in(const base::TomlTable& table,
                                              const wire::WireSpecification& specification,
                                              const wire::RodDamping& damping,

@@ -70,8 +70,8 @@ DeclaredWire read_wire_item(const TomlTable& table, const wire::RodDamping& damp
   if (w.law && w.mounts.give_way())
     table.table("mount").fail(
         "", "a law stands for the wire and for what its mounts give: only \"kind\" is allowed");
-  // Of a round wire it is EI/(1 + nu), of strands that slide not much less. A wire that turns about itself as it likes swings about its chord
-  // without a force: it has no equilibrium that could be followed.
+  // Of a round wire it is EI/(1 + nu), of strands that slide not much less. A wire that turns about itself as
+  // it likes swings about its chord without a force: it has no equilibrium that could be followed.
   constexpr double least_share = 1e-3;
   if (w.wire.rod.quasi_static &&
       w.specification.torsional_stiffness() < least_share * w.specification.bending_stiffness())
@@ -149,7 +149,8 @@ coupling::MotionWire at_rest(DeclaredWire w, const Eigen::Matrix3Xd* shape) {
     end.position = rest_frame * end.position + w.from;
     end.direction = rest_frame * end.direction;
     end.director = rest_frame * end.director;
-    // A mount that gives holds the end as a part of the motion; the wire's own spring was that of the shape at rest.
+    // A mount that gives holds the end as a part of the motion; the wire's own spring was that of the shape
+    // at rest.
     const Eigen::Index vertex = which == wire::End::left ? 0 : w.wire.positions.cols() - 1;
     if (!end.gives()) w.wire.positions.col(vertex) = end.position;
     end.translational_stiffness = std::numeric_limits<double>::infinity();

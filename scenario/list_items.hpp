@@ -19,8 +19,8 @@
 
 namespace snare::scenario {
 
-/// The items of a scenario's lists that stand for themselves: wires, bodies, shapes, contacts of wires. Keys, units and ranges in
-/// docs/scenario_file.md; what is wrong is reported to the tables' document.
+/// The items of a scenario's lists that stand for themselves: wires, bodies, shapes, contacts of wires. Keys,
+/// units and ranges in docs/scenario_file.md; what is wrong is reported to the tables' document.
 
 /// A wire as it stands in the file; its shape at rest is found when all of the file is known to be right.
 struct DeclaredWire {
@@ -44,20 +44,21 @@ struct DeclaredWire {
 /// The wire for which a law stands, in its place but without a shaft.
 [[nodiscard]] coupling::LawWire law_in_place(const DeclaredWire& wire);
 
-/// Construction, mesh, mounts' kind, strength and tightness of a wire: all but its place. Damping is that of all wires. beside: of a wire that
-/// laws of pushes may stand for. natural_length: of one that may leave its length out [m].
+/// Construction, mesh, mounts' kind, strength and tightness of a wire: all but its place. Damping is that of
+/// all wires. beside: of a wire that laws of pushes may stand for. natural_length: of one that may leave its
+/// length out [m].
 [[nodiscard]] DeclaredWire read_wire_item(const base::TomlTable& table, const wire::RodDamping& damping,
                                           wire::SpatialEnd::Kind mount,
                                           const std::optional<BesideScenario>& beside = {},
                                           std::optional<double> natural_length = {});
 /// Sets the constants of the rod from all that is declared of it; its mounts a span [m] apart.
 void set_rod(DeclaredWire& wire, double span);
-/// Sets place and span, with the direction of the slack, and reports a wire that does not fit there; keys: those of the file
-/// that give the far end and the direction.
+/// Sets place and span, with the direction of the slack, and reports a wire that does not fit there; keys:
+/// those of the file that give the far end and the direction.
 void stretch(DeclaredWire& wire, const base::TomlTable& table, const std::string& to_key,
              const std::string& bulge_key);
-/// The wire at rest where its mounts are. Throws InputError when it finds no rest. shape: where it rests in its own frame, chord along x and bulge
-/// to y, (3, vertices) [m]; none: it is looked for.
+/// The wire at rest where its mounts are. Throws InputError when it finds no rest. shape: where it rests in
+/// its own frame, chord along x and bulge to y, (3, vertices) [m]; none: it is looked for.
 [[nodiscard]] coupling::MotionWire at_rest(DeclaredWire wire, const Eigen::Matrix3Xd* shape = nullptr);
 
 /// A body, which moves by its centre of mass, and where that is in the frame that has the body's name [m].
@@ -81,7 +82,8 @@ struct DeclaredBody {
 [[nodiscard]] coupling::WirePair read_wire_pair(const base::TomlTable& table, const Names& wires,
                                                 const std::vector<DeclaredWire>& declared);
 
-/// Pose of an item in its frame: `position_mm`, and `rotation_deg` (a rotation vector) or `rpy_deg` (about fixed axes).
+/// Pose of an item in its frame: `position_mm`, and `rotation_deg` (a rotation vector) or `rpy_deg` (about
+/// fixed axes).
 [[nodiscard]] multibody::Pose read_pose_in_frame(const base::TomlTable& table);
 
 }  // namespace snare::scenario

@@ -226,8 +226,8 @@ void check_keys(const DeclaredWire& w, const StartPoints& start, const TomlTable
         "must have no velocities of a wire that an arm or a body carries: it begins with their motion");
 }
 
-/// Kinds of `ends`; none without it. Between a free end and a pin nothing twists the wire, so that the pin is a ball joint, about which it may
-/// turn by any angle.
+/// Kinds of `ends`; none without it. Between a free end and a pin nothing twists the wire, so that the pin is
+/// a ball joint, about which it may turn by any angle.
 std::optional<EndKinds> read_ends(const TomlTable& table) {
   static constexpr base::Choice<Kind> kinds[] = {
       {"clamped", Kind::clamp}, {"pinned", Kind::twisting_pin}, {"free", Kind::free}};
@@ -242,7 +242,8 @@ std::optional<EndKinds> read_ends(const TomlTable& table) {
   return ends;
 }
 
-/// The points of `shape_file`, or those of a straight wire with a free end. None after a problem, which is reported.
+/// The points of `shape_file`, or those of a straight wire with a free end. None after a problem, which is
+/// reported.
 std::optional<StartPoints> read_start_points(const TomlTable& table, const BesideScenario& beside,
                                              const PlacedFrame& from, const PlacedFrame& to) {
   const auto in_world = [](const PlacedFrame& on, const Matrix3Xd& places) -> Matrix3Xd {
@@ -279,7 +280,8 @@ std::optional<StartPoints> read_start_points(const TomlTable& table, const Besid
   return start;
 }
 
-/// Lays a wire of which all but its place is known onto the line through its points, and reports where it does not fit there.
+/// Lays a wire of which all but its place is known onto the line through its points, and reports where it
+/// does not fit there.
 void lay_on_line(DeclaredWire& w, const TomlTable& table, StartPoints start, const PlacedFrame& from,
                  const PlacedFrame& to) {
   if (w.wire.rod.properties.left.kind != Kind::free) w.from_carrier = from.carrier;

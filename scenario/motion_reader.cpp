@@ -93,7 +93,8 @@ MotionOutput read_motion_output(const TomlTable& table, coupling::MotionOptions&
 
 namespace {
 
-/// Of stretch [s]. A wire that takes longer to give way along itself is rigid for what a motion lasts; metals take 1e-7 to 1e-4 s.
+/// Of stretch [s]. A wire that takes longer to give way along itself is rigid for what a motion lasts; metals
+/// take 1e-7 to 1e-4 s.
 constexpr double longest_axial_time = 0.1;
 
 }  // namespace

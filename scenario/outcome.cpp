@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Where the shaft's axis passes through the plane z = height of the snare's frame, and how fast that point of the shaft moves
-/// there; none where it runs along the plane.
+/// Where the shaft's axis passes through the plane z = height of the snare's frame, and how fast that point
+/// of the shaft moves there; none where it runs along the plane.
 struct Crossing {
   Vector3d place, velocity;
 };
@@ -33,7 +33,8 @@ std::optional<Crossing> crossing(const FrameTrack::State& shaft, const FrameTrac
   return c;
 }
 
-/// Angle by which the sight from a point along a wire turns about z: that of the ring on the inner side, less a turn beyond.
+/// Angle by which the sight from a point along a wire turns about z: that of the ring on the inner side, less
+/// a turn beyond.
 double swept(const Matrix3Xd& wire, const multibody::Pose& X_WS, const Vector3d& point) {
   double sum = 0.0;
   const multibody::Pose X_SW = X_WS.inverse();

@@ -24,29 +24,31 @@ struct PlacedFrame {
   return {s.orientation.toRotationMatrix(), s.position};
 }
 
-/// Finds out where everything of a scenario stands at the start: things stand on frames that other things bring, in any order in
-/// the file.
+/// Finds out where everything of a scenario stands at the start: things stand on frames that other things
+/// bring, in any order in the file.
 class Placement {
  public:
   /// Places a thing on its frame: told the frame, adds its own frames.
   using Place = std::function<void(const PlacedFrame& on, Placement& placement)>;
 
   Placement();
-  /// A thing that stands on the frame under a key of a table ("world" where the key is missing), and brings frames of which the
-  /// names are `own` or begin with `own` and "::".
+  /// A thing that stands on the frame under a key of a table ("world" where the key is missing), and brings
+  /// frames of which the names are `own` or begin with `own` and "::".
   void stand(const base::TomlTable& table, std::string key, std::string own, Place place);
   /// Places all that stands on something; loops and unknown names are reported.
   void resolve();
   /// A frame that is placed. A name that is taken is kept as it was.
   void add(const std::string& name, const PlacedFrame& frame);
 
-  /// What brings frames of this name, or of names that begin with it and "::", has failed: they are not reported as missing.
+  /// What brings frames of this name, or of names that begin with it and "::", has failed: they are not
+  /// reported as missing.
   void excuse(const std::string& own) { excused_.push_back(own); }
 
   /// Whether `excuse` was told of what brings this name.
   [[nodiscard]] bool is_excused(const std::string& name) const;
 
-  /// The frame under a key of a table, "world" where it is missing: all must be resolved. Nothing after a problem.
+  /// The frame under a key of a table, "world" where it is missing: all must be resolved. Nothing after a
+  /// problem.
   [[nodiscard]] std::optional<PlacedFrame> frame(const base::TomlTable& table, std::string_view key) const;
   [[nodiscard]] std::optional<PlacedFrame> find(const std::string& name) const;
   [[nodiscard]] std::string requirement() const;

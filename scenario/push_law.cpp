@@ -150,7 +150,8 @@ numerics::HermiteCurve first_touch(const Eigen::Matrix3Xd& rest, double radius, 
   std::vector<double> places, touches, slopes;
   for (int i = 0; i <= count; ++i) {
     const double s = span * i / count;
-    // Where the slope of the wire is that of the disc: w' + (x - s)/sqrt(R^2 - (x - s)^2) = 0 rises through zero between the disc's edges.
+    // Where the slope of the wire is that of the disc: w' + (x - s)/sqrt(R^2 - (x - s)^2) = 0 rises through
+    // zero between the disc's edges.
     double low = std::max(0.0, s - radius), high = std::min(span, s + radius);
     for (int k = 0; k < 60; ++k) {
       const double middle = 0.5 * (low + high), from = middle - s;

@@ -16,8 +16,9 @@
 
 namespace snare::scenario {
 
-/// What stands for a wire whose mounts stand still to each other, and that a shaft pushes across its chord: a table that was distilled
-/// from it, or a law of one place.                                                                      theory.md (M.27)
+/// What stands for a wire whose mounts stand still to each other, and that a shaft pushes across its chord: a
+/// table that was distilled
+/// from it, or a law of one place.                                                           theory.md (M.27)
 struct PushModel {
   double side = 1.0;         ///< of the push: 1 with the bulge, -1 against it [-]
   coupling::ContactLaw law;  ///< of one place; empty: the table
@@ -37,7 +38,8 @@ struct BesideScenario {
   std::string& input;
 };
 
-/// Of the model of this name, from the table of its numbers in a wire's table; nothing after a problem, which is reported.
+/// Of the model of this name, from the table of its numbers in a wire's table; nothing after a problem, which
+/// is reported.
 [[nodiscard]] std::optional<PushModel> read_push_model(const base::TomlTable& wire, std::string_view model,
                                                        const BesideScenario& beside);
 /// Reports what is wrong in a table of such numbers that stands beside another model.
@@ -46,14 +48,15 @@ void read_numbers(const base::TomlTable& wire, std::string_view model);
 void check_push_model(const PushModel& push, const wire::RodInMotion& rod, double span,
                       const base::TomlTable& wire);
 
-/// Where a disc of a radius first touches a wire at rest, by its place s along the chord [m]: the height along the push [m].
+/// Where a disc of a radius first touches a wire at rest, by its place s along the chord [m]: the height
+/// along the push [m].
 ///   y(s) = min over x of w(x) - sqrt(R^2 - (x - s)^2),  w the wire's height
-/// rest: vertices of the wire between mounts at the origin and on the x axis, bulging to y [m]. Throws base::InputError where the wire
-/// does not lie over its chord.
+/// rest: vertices of the wire between mounts at the origin and on the x axis, bulging to y [m]. Throws
+/// base::InputError where the wire does not lie over its chord.
 [[nodiscard]] numerics::HermiteCurve first_touch(const Eigen::Matrix3Xd& rest, double radius, double side);
 
-/// Puts the law into a wire that has its shaft. rod: in its own frame, as of wire::rod_in_motion. Throws base::InputError where the wire
-/// finds no rest.
+/// Puts the law into a wire that has its shaft. rod: in its own frame, as of wire::rod_in_motion. Throws
+/// base::InputError where the wire finds no rest.
 void set_push_law(const PushModel& push, const wire::RodInMotion& rod, coupling::LawWire& wire);
 
 }  // namespace snare::scenario

@@ -44,8 +44,8 @@ std::string in_mm(double metres) {
 
 namespace {
 
-/// The modulus, or where it is left out the one with which a solid round section has the declared stiffness, by which
-/// strains become stresses. It may be left out where every stiffness that is needed is declared.
+/// The modulus, or where it is left out the one with which a solid round section has the declared stiffness,
+/// by which strains become stresses. It may be left out where every stiffness that is needed is declared.
 void read_modulus(const TomlTable& table, Held held, wire::WireSpecification& wire) {
   const bool known =
       wire.bending_stiffness_override && (wire.axial_stiffness_override || held == Held::on_supports);

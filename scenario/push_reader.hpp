@@ -17,11 +17,12 @@ struct PushTables {
 /// Those of a file, or of one of its tables.
 [[nodiscard]] PushTables push_tables(const base::TomlTable& root);
 
-/// Reads and checks wire, mounts, pusher, bulge and gravity; what is wrong is reported to the tables' document.
-/// Contact position and travel are left to the caller.
+/// Reads and checks wire, mounts, pusher, bulge and gravity; what is wrong is reported to the tables'
+/// document. Contact position and travel are left to the caller.
 [[nodiscard]] coupling::PushProblem read_push_problem(const PushTables& tables);
 
-/// Keys in [mount] of the stiffness of the left and of the right mount by itself, in series with that of each.
+/// Keys in [mount] of the stiffness of the left and of the right mount by itself, in series with that of
+/// each.
 inline constexpr std::array<const char*, 2> own_translational_keys{"translational_stiffness_left_N_m",
                                                                    "translational_stiffness_right_N_m"};
 inline constexpr std::array<const char*, 2> own_rotational_keys{"rotational_stiffness_left_Nm_rad",
@@ -29,7 +30,8 @@ inline constexpr std::array<const char*, 2> own_rotational_keys{"rotational_stif
 /// Keys in [mount] with which mounts are not rigid.
 [[nodiscard]] std::array<const char*, 7> keys_of_giving_mounts();
 
-/// Reports what the wire in motion does not have: supports, slipping or elastic mounts, yielding, natural curvature.
+/// Reports what the wire in motion does not have: supports, slipping or elastic mounts, yielding, natural
+/// curvature.
 void require_simple_motion(const PushTables& tables, const coupling::PushProblem& test);
 
 /// Reads and checks a wire alone, of a table with the keys of [wire].
@@ -44,7 +46,8 @@ void check_wire_between_mounts(const wire::WireSpecification& wire, double span,
 /// The same of wire and mounts alone.
 [[nodiscard]] coupling::PushProblem read_wire_and_mounts(const PushTables& tables);
 
-/// What is wrong with a contact at `position` along the chord [m]; nothing when it is far enough from both mounts.
+/// What is wrong with a contact at `position` along the chord [m]; nothing when it is far enough from both
+/// mounts.
 [[nodiscard]] std::optional<std::string> position_problem(double position, double span);
 
 }  // namespace snare::scenario

@@ -116,7 +116,8 @@ class Sight {
   FrameTrack frame_, other_;
 };
 
-/// Noise of the readings of a sensor, one after the other: one stream a sensor, so that what others there are makes no difference to it.
+/// Noise of the readings of a sensor, one after the other: one stream a sensor, so that what others there are
+/// makes no difference to it.
 class NoiseStream {
  public:
   explicit NoiseStream(const Sensor& sensor)

@@ -10,7 +10,8 @@
 
 namespace snare::scenario {
 
-/// What a sensor tells of a motion.                                                            docs/scenario_file.md
+/// What a sensor tells of a motion.
+/// docs/scenario_file.md
 struct Sensor {
   enum class Kind {
     position,       ///< of a frame's origin in another frame [m], three
@@ -47,7 +48,8 @@ struct Sensor {
   [[nodiscard]] std::vector<std::string> columns() const;
 };
 
-/// What the sensor tells phases while the motion runs: the readings of `read_off`, in the unit of its columns.
+/// What the sensor tells phases while the motion runs: the readings of `read_off`, in the unit of its
+/// columns.
 [[nodiscard]] coupling::SensedSignal sensed_by(const Sensor& sensor);
 
 /// Readings of a sensor, in the units of its columns.
@@ -56,7 +58,8 @@ struct Readings {
   std::vector<std::vector<double>> values;  ///< of every component
 };
 
-/// What a sensor reads along the samples of a motion; between two samples, where the delay falls there, straight.
+/// What a sensor reads along the samples of a motion; between two samples, where the delay falls there,
+/// straight.
 [[nodiscard]] Readings read_off(const Sensor& sensor, const coupling::Motion& motion,
                                 const std::vector<coupling::MotionSample>& samples);
 

@@ -51,7 +51,7 @@ struct Snares::Item {
   std::optional<SnareJoint> carriage = {};
   std::optional<DeclaredWire> wire = {};
 
-  /// Of the place of a wire on the fixed ring, to either side that the ring turns.                  theory.md (M.24)
+  /// Of the place of a wire on the fixed ring, to either side that the ring turns.           theory.md (M.24)
   [[nodiscard]] double azimuth(std::size_t k) const {
     return first_azimuth +
            2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(heights.size());
@@ -93,7 +93,8 @@ SnareJoint read_joint(const TomlTable& table, const std::string& name, bool slid
   return j;
 }
 
-/// Radius to which a pinned wire of a length bows between mounts of a ring that are an angle apart, as an arc: a lower bound.
+/// Radius to which a pinned wire of a length bows between mounts of a ring that are an angle apart, as an
+/// arc: a lower bound.
 double arc_bow(double radius, double angle) {
   return radius * (1.0 - std::cos(0.5 * angle));
 }
@@ -213,7 +214,8 @@ void Snares::place(const Item& item, const PlacedFrame& on) {
   }
 }
 
-// Wire k from the fixed ring at the azimuth of its place to the turning ring, which at zero is over the fixed one.
+// Wire k from the fixed ring at the azimuth of its place to the turning ring, which at zero is over the fixed
+// one.
 void Snares::add_wires() {
   for (Item& item : items_) {
     if (!item.wire) continue;

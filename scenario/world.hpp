@@ -49,7 +49,8 @@ struct WireMotions {
   std::optional<coupling::Motion> on_half_mesh;
 };
 
-/// What a scenario's file says there is.                                                      docs/scenario_file.md
+/// What a scenario's file says there is.
+/// docs/scenario_file.md
 struct Scenario {
   std::string title, source;
   WireMotions motions;

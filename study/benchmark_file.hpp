@@ -38,7 +38,8 @@ struct BenchmarkCase {
   std::optional<double> step_at;  ///< when the largest explicit step is asked for [s]; none: it is not
 };
 
-/// A file of `snare benchmark`, "snare-benchmark/1".                                                 docs/benchmark_file.md
+/// A file of `snare benchmark`, "snare-benchmark/1".
+/// docs/benchmark_file.md
 struct BenchmarkFile {
   std::filesystem::path file;
   std::string title, source;

@@ -21,8 +21,8 @@ class Dispatcher {
              std::function<void(std::uint64_t index, const std::string& result)> finished,
              std::function<bool()> stop);
 
-  [[nodiscard]] std::vector<std::uint64_t> take(
-      int worker);  ///< cases for a worker; empty: there are no more
+  /// Cases for a worker; empty: there are no more.
+  [[nodiscard]] std::vector<std::uint64_t> take(int worker);
   void report(int worker, std::uint64_t index, const std::string& result, double seconds);
   /// given_up: result of a case that is not handed out again.
   void lost(int worker, const std::function<std::string(std::uint64_t index)>& given_up);
@@ -47,10 +47,12 @@ class Dispatcher {
 /// Runs a case; its result in one line. Must not throw.
 using RunCase = std::function<std::string(std::uint64_t index)>;
 
-/// What a thread does that finds nothing to take. wait: others have cases that may come back, so that this is not the end.
+/// What a thread does that finds nothing to take. wait: others have cases that may come back, so that this is
+/// not the end.
 enum class Idle { leave, wait };
 
-/// Runs cases on threads of this machine until nothing is left to take. A case that ran while everything ended is not reported.
+/// Runs cases on threads of this machine until nothing is left to take. A case that ran while everything
+/// ended is not reported.
 void run_cases(Dispatcher& dispatcher, int threads, const RunCase& run, Idle idle = Idle::leave);
 
 /// What a case gave, and how long that took.

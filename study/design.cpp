@@ -15,7 +15,8 @@
 
 namespace snare::study {
 
-/// Sobol's sequence with the numbers of Joe and Kuo, each dimension of each replicate shifted by bits of its own drawn at random.
+/// Sobol's sequence with the numbers of Joe and Kuo, each dimension of each replicate shifted by bits of its
+/// own drawn at random.
 struct Design::Sequence {
   Sequence(std::size_t dimensions, std::uint64_t seed, std::uint64_t replicates) : engine(dimensions) {
     for (std::uint64_t r = 0; r < replicates; ++r) {

@@ -27,7 +27,8 @@ enum class DesignKind {
   latin_hypercube,  ///< of n slices of equal probability every variable has one case in each
   sobol,            ///< Sobol's sequence, shifted at random
   file,             ///< a table of cases
-  sensitivity,  ///< n times the rows A, B and A with a column of B, in replicates                         theory.md (S.4)
+  /// n times the rows A, B and A with a column of B, in replicates                            theory.md (S.4)
+  sensitivity,
   subset  ///< the next cases depend on the last ones: no list beforehand
 };
 
@@ -37,7 +38,8 @@ struct DesignSettings {
   /// latin_hypercube, sobol: cases; sensitivity: n; subset: cases a level.
   std::uint64_t cases = 0;
   std::uint64_t seed = 0;
-  /// Correlation of the normal scores of the variables, (n, n); no rows: none are correlated.          theory.md (S.2)
+  /// Correlation of the normal scores of the variables, (n, n); no rows: none are correlated.
+  ///                                                                                          theory.md (S.2)
   Eigen::MatrixXd correlation;
   std::vector<std::vector<double>> table;  ///< file: a column a variable
 };
@@ -57,9 +59,8 @@ class Design {
   Design& operator=(Design&&) noexcept;
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }  ///< of cases
-  [[nodiscard]] const std::vector<Variable>& variables() const noexcept {
-    return variables_;
-  }  ///< what differs from case to case
+  /// What differs from case to case.
+  [[nodiscard]] const std::vector<Variable>& variables() const noexcept { return variables_; }
   [[nodiscard]] const DesignSettings& settings() const noexcept { return settings_; }  ///< as they were given
 
   /// What the variables are in a case < count(): a number, in the unit of its keys, or the index of a level.
@@ -80,7 +81,8 @@ class Design {
   std::unique_ptr<Sequence> sequence_;
 };
 
-/// A value of a variable, in the unit of its keys, as a TOML literal: the level, or the number with the fewest digits that read back to it.
+/// A value of a variable, in the unit of its keys, as a TOML literal: the level, or the number with the
+/// fewest digits that read back to it.
 [[nodiscard]] std::string literal(const Variable& variable, double value);
 
 /// Whether a matrix is a correlation: symmetric, 1 on the diagonal, positive definite.

@@ -4,7 +4,8 @@
 
 namespace snare::study {
 
-/// Distribution of one number of a case, cut off outside [lower, upper] where these are finite.          theory.md (S.1)
+/// Distribution of one number of a case, cut off outside [lower, upper] where these are finite.
+///                                                                                            theory.md (S.1)
 ///   uniform      a, b: ends, a < b
 ///   normal       a: mean, b > 0: standard deviation
 ///   lognormal    a: mean, b > 0: standard deviation of the logarithm

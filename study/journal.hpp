@@ -10,31 +10,33 @@
 
 namespace snare::study {
 
-/// What is finished of a study, in a file to which one line a case is appended.                docs/decisions/sweeps.md#cases-journal-and-ranks
+/// What is finished of a study, in a file to which one line a case is appended.
+/// docs/decisions/sweeps.md#cases-journal-and-ranks
 ///
-/// A line has the case's number, its result, and a checksum. After a kill at any moment the lines that are whole count; a torn or
-/// damaged one is taken out or passed over, and its case is run again. A file to which no case was appended is removed with the object.
-/// 8 bytes a case are held in memory.
+/// A line has the case's number, its result, and a checksum. After a kill at any moment the lines that are
+/// whole count; a torn or damaged one is taken out or passed over, and its case is run again. A file to which
+/// no case was appended is removed with the object. 8 bytes a case are held in memory.
 class Journal {
  public:
   enum class Use {
     append,  ///< one at a time holds the file, by a lock that goes with the process
     look     ///< what is there, while another may be appending; nothing is written
   };
-  /// Opens the file; to append it is made where it is missing. identity: one line of text, equal for equal studies. count: cases there
-  /// are; 0: not known. Throws base::InputError when the file belongs to another study, is held by another run or is no regular file,
-  /// std::system_error when the system refuses.
+  /// Opens the file; to append it is made where it is missing. identity: one line of text, equal for equal
+  /// studies. count: cases there are; 0: not known. Throws base::InputError when the file belongs to another
+  /// study, is held by another run or is no regular file, std::system_error when the system refuses.
   Journal(std::filesystem::path file, const std::string& identity, std::uint64_t count,
           Use use = Use::append);
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// Appends the result of a case: a text without line breaks. Thread-safe; a case that is there already is passed over. On failure
-  /// (std::system_error: a full disk) the file ends with its last whole line.
+  /// Appends the result of a case: a text without line breaks. Thread-safe; a case that is there already is
+  /// passed over. On failure (std::system_error: a full disk) the file ends with its last whole line.
   void append(std::uint64_t index, std::string_view result);
-  /// As `append`, in the handler of a signal that ends the process: allocates nothing, throws nothing. result: of at most
-  /// `longest_last_words` bytes. Not for the thread that is in another call of this journal.
+  /// As `append`, in the handler of a signal that ends the process: allocates nothing, throws nothing.
+  /// result: of at most `longest_last_words` bytes. Not for the thread that is in another call of this
+  /// journal.
   void append_at_the_end(std::uint64_t index, std::string_view result) noexcept;
   static constexpr std::size_t longest_last_words = 4096;  ///< [byte]
   /// Waits until what was appended is on the disk.

@@ -7,7 +7,8 @@
 
 namespace snare::study {
 
-/// Processes that work together and send each other bytes: those of an `mpirun`, or threads of a test. Used by one thread a process.
+/// Processes that work together and send each other bytes: those of an `mpirun`, or threads of a test. Used
+/// by one thread a process.
 class Ranks {
  public:
   struct Message {
@@ -22,7 +23,8 @@ class Ranks {
   virtual void send(int to, const std::string& bytes) = 0;
   /// A message that has arrived, from anybody; nothing where there is none.
   [[nodiscard]] virtual std::optional<Message> receive() = 0;
-  /// To be called before the end, when all others will do the same. Without it the process may end, but not in good order.
+  /// To be called before the end, when all others will do the same. Without it the process may end, but not
+  /// in good order.
   virtual void leave() = 0;
 };
 

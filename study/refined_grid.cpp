@@ -69,7 +69,8 @@ void RefinedGrid::ask_neighbours() {
   });
 }
 
-/// A case in the middle of an edge, a face or a cell is inferred where its corners agree, and asked where they differ.
+/// A case in the middle of an edge, a face or a cell is inferred where its corners agree, and asked where
+/// they differ.
 void RefinedGrid::halve() {
   const std::uint64_t before = width_;
   width_ /= 2;

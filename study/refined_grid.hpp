@@ -15,11 +15,12 @@ struct Seen {
   std::string word;
 };
 
-/// A grid of which those cases are run that tell where a quantity changes.                                  theory.md (S.7)
+/// A grid of which those cases are run that tell where a quantity changes.                    theory.md (S.7)
 ///
-/// The first cells are 2^levels steps of the grid wide along every refined axis, and all their corners are run. Halved again and again, a
-/// case in the middle of an edge, a face or a cell is run where the corners of that differ, and else inferred from them. Of two
-/// neighbours that differ both are run. A change that lies within a first cell, none of its corners on the other side, is not seen.
+/// The first cells are 2^levels steps of the grid wide along every refined axis, and all their corners are
+/// run. Halved again and again, a case in the middle of an edge, a face or a cell is run where the corners of
+/// that differ, and else inferred from them. Of two neighbours that differ both are run. A change that lies
+/// within a first cell, none of its corners on the other side, is not seen.
 class RefinedGrid {
  public:
   struct Axis {
@@ -44,7 +45,8 @@ class RefinedGrid {
 
   [[nodiscard]] bool finished() const noexcept { return asked_.empty(); }  ///< no case is to be run any more
   [[nodiscard]] std::uint64_t told() const noexcept { return told_; }      ///< cases so far
-  /// What a case that was not run would say: the mean of the corners between which it lies; nothing where it was run or is not known yet.
+  /// What a case that was not run would say: the mean of the corners between which it lies; nothing where it
+  /// was run or is not known yet.
   [[nodiscard]] std::optional<Seen> inferred(std::uint64_t index) const;
   [[nodiscard]] std::uint64_t points() const noexcept { return points_.size(); }  ///< of the grid
 

@@ -20,8 +20,8 @@ std::vector<std::uint64_t> Scheduler::take(int worker) {
     cases.push_back(again_.front());
     again_.pop_front();
   } else {
-    // Guided self-scheduling (Polychronopoulos, Kuck 1987), a quarter of an even share at most, so that the last chunks are
-    // single cases.
+    // Guided self-scheduling (Polychronopoulos, Kuck 1987), a quarter of an even share at most, so that the
+    // last chunks are single cases.
     const std::uint64_t share =
         (settings_.count - next_) / (4 * static_cast<std::uint64_t>(settings_.workers));
     std::uint64_t size = 1;
@@ -56,7 +56,8 @@ std::vector<std::uint64_t> Scheduler::lost(int worker) {
   std::vector<std::uint64_t> given_up;
   const auto found = out_.find(worker);
   if (found == out_.end()) return given_up;
-  // The first that was not reported may be what the worker was lost with; the others never began, or will be done again.
+  // The first that was not reported may be what the worker was lost with; the others never began, or will be
+  // done again.
   for (std::size_t k = 0; k < found->second.size(); ++k) {
     const std::uint64_t index = found->second[k];
     if (k == 0 && ++lost_with_[index] >= patience) {

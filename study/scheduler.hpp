@@ -9,11 +9,13 @@
 
 namespace snare::study {
 
-/// Hands out the cases of a study to workers: threads, or processes on other machines. Pure bookkeeping: it knows neither, and its
-/// callers pass the time.                                                                    docs/decisions/sweeps.md#cases-journal-and-ranks
+/// Hands out the cases of a study to workers: threads, or processes on other machines. Pure bookkeeping: it
+/// knows neither, and its callers pass the time.
+/// docs/decisions/sweeps.md#cases-journal-and-ranks
 ///
-/// A worker gets so many cases at a time that it comes back after about `chunk_s`, fewer towards the end. Cases that a lost worker
-/// had not reported are handed out again one by one; one that two workers were lost with is given up.
+/// A worker gets so many cases at a time that it comes back after about `chunk_s`, fewer towards the end.
+/// Cases that a lost worker had not reported are handed out again one by one; one that two workers were lost
+/// with is given up.
 class Scheduler {
  public:
   struct Settings {

@@ -18,7 +18,8 @@ double sum(const Sums& sums) {
   return total;
 }
 
-/// Half of the 95 % interval of r = sum(v) / sum(w), by linear propagation: the replicates' v - r w are independent.
+/// Half of the 95 % interval of r = sum(v) / sum(w), by linear propagation: the replicates' v - r w are
+/// independent.
 double half_interval(const Sums& v, const Sums& w, const Sums& rows) {
   const double r = sum(v) / sum(w);
   double squares = 0.0;
@@ -67,8 +68,8 @@ SobolIndices sobol_indices(std::size_t variables, std::uint64_t rows,
   if (replicates < least) return indices;
   indices.mean /= static_cast<double>(indices.rows);
 
-  // V = E[(f_A - m)^2 + (f_B - m)^2] / 2, T_j = E[(f_A - f_ABj)^2] / 2; V_j by products, E[(f_B - m) (f_ABj - f_A)], or by
-  // differences, V - E[(f_B - f_ABj)^2] / 2.
+  // V = E[(f_A - m)^2 + (f_B - m)^2] / 2, T_j = E[(f_A - f_ABj)^2] / 2; V_j by products, E[(f_B - m) (f_ABj -
+  // f_A)], or by differences, V - E[(f_B - f_ABj)^2] / 2.
   Sums variance{};
   double squares = 0.0;
   std::vector<Sums> by_products(variables), by_differences(variables), total(variables);

@@ -14,7 +14,8 @@ struct SobolIndex {
   double first_half = 0.0, total_half = 0.0;  ///< half of the 95 % interval, by the scatter of the replicates
 };
 
-/// Independently shifted replicates of which the rows of a sensitivity design consist: row i belongs to i modulo this.
+/// Independently shifted replicates of which the rows of a sensitivity design consist: row i belongs to i
+/// modulo this.
 inline constexpr std::uint64_t sobol_replicates = 8;
 
 /// Below it a few rare results decide, and intervals would be too narrow.
@@ -31,9 +32,9 @@ struct SobolIndices {
   std::uint64_t dropped = 0;    ///< in which a case has no result
 };
 
-/// From the cases of a sensitivity design. first: Saltelli et al. 2010, (b) of Table 2, or of rare outcomes Jansen 1999; total: Jansen;
-/// intervals by Student's t over the replicates. result: of a case, asked twice in ascending order; only sums are kept.
-/// In the field's unit.
+/// From the cases of a sensitivity design. first: Saltelli et al. 2010, (b) of Table 2, or of rare outcomes
+/// Jansen 1999; total: Jansen; intervals by Student's t over the replicates. result: of a case, asked twice
+/// in ascending order; only sums are kept. In the field's unit.
 [[nodiscard]] SobolIndices sobol_indices(
     std::size_t variables, std::uint64_t rows,
     const std::function<std::optional<double>(std::uint64_t index)>& result);

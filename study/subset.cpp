@@ -82,7 +82,8 @@ void SubsetSimulation::tell(const std::vector<std::optional<double>>& margins) {
   }
 }
 
-// gamma of Au, Beck 2001, eq. 25-27: what the correlation of I(margin >= threshold) along the chains adds to the variance.
+// gamma of Au, Beck 2001, eq. 25-27: what the correlation of I(margin >= threshold) along the chains adds to
+// the variance.
 double SubsetSimulation::variation_of(double threshold, double probability) const {
   const auto n = static_cast<double>(seeds_ * length_);
   if (!(probability > 0.0)) return 1.0;
@@ -110,7 +111,8 @@ void SubsetSimulation::end_level() {
   // seeds_ of the states are above it, more where margins are equal.
   const double next = 0.5 * (states[seeds_ - 1].second->margin + states[seeds_].second->margin);
   const double from = first_ ? far : threshold_;
-  // Where the margin has few values the next threshold may leave nothing out: then the share of the event is counted as it is.
+  // Where the margin has few values the next threshold may leave nothing out: then the share of the event is
+  // counted as it is.
   const bool stuck = !(next > states.back().second->margin);
   const bool last = states[seeds_ - 1].second->margin >= 0.0 || !std::isfinite(next) || stuck;
   const double threshold = last ? 0.0 : next;
@@ -157,8 +159,9 @@ double SubsetSimulation::probability() const noexcept {
   return p;
 }
 
-// Thresholds taken as given, the probability is the mean of independent contributions, one a case of the first level: the cases of the
-// last level that descend from it, w of all of them. Its relative variance is sum w^2 - 1/n.
+// Thresholds taken as given, the probability is the mean of independent contributions, one a case of the
+// first level: the cases of the last level that descend from it, w of all of them. Its relative variance is
+// sum w^2 - 1/n.
 double SubsetSimulation::variation() const noexcept {
   if (hits_ == 0) return 1.0;
   return std::sqrt(std::max(0.0, family_squares_ - 1.0 / static_cast<double>(seeds_ * length_)));

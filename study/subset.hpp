@@ -9,11 +9,12 @@
 
 namespace snare::study {
 
-/// Probability of a rare event by levels each of which is not rare (Au, Beck 2001).               theory.md (S.5)
+/// Probability of a rare event by levels each of which is not rare (Au, Beck 2001).           theory.md (S.5)
 ///
-/// The cases of a level are Markov chains that start at those of the level before that came nearest to the event. A step is
-/// that of Papaioannou, Betz, Zwirglmaier, Straub 2015: z' = sqrt(1 - l^2) z + l xi, kept where it stays in the level; l follows
-/// the share of kept steps to 0.44. Random numbers depend on the case's number only, so what was computed can be told again.
+/// The cases of a level are Markov chains that start at those of the level before that came nearest to the
+/// event. A step is that of Papaioannou, Betz, Zwirglmaier, Straub 2015: z' = sqrt(1 - l^2) z + l xi, kept
+/// where it stays in the level; l follows the share of kept steps to 0.44. Random numbers depend on the
+/// case's number only, so what was computed can be told again.
 class SubsetSimulation {
  public:
   struct Settings {
@@ -26,29 +27,32 @@ class SubsetSimulation {
   struct Level {
     double threshold = 0.0;    ///< margin that the level's cases reach
     double probability = 0.0;  ///< of the next level's threshold within this one
-    double variation =
-        0.0;  ///< its coefficient of variation, with the correlation along the chains (Au, Beck 2001, eq. 25-27)
+    /// its coefficient of variation, with the correlation along the chains (Au, Beck 2001, eq. 25-27)
+    double variation = 0.0;
   };
 
   explicit SubsetSimulation(const Settings& settings);
 
   /// Standard normal scores [-] of the next cases, which may run at a time; none: it is finished.
   [[nodiscard]] const std::vector<std::vector<double>>& next() const noexcept { return asked_; }
-  /// Margins of the cases that next() has given, in the field's unit: >= 0 where the event happens; nothing where the case has no result, which
-  /// counts as far from the event.
+  /// Margins of the cases that next() has given, in the field's unit: >= 0 where the event happens; nothing
+  /// where the case has no result, which counts as far from the event.
   void tell(const std::vector<std::optional<double>>& margins);
 
   /// Cases that were told before those of next().
   [[nodiscard]] std::uint64_t told() const noexcept { return told_; }
   [[nodiscard]] bool finished() const noexcept { return asked_.empty(); }
-  /// Whether the event was reached; else the probability is that of the last threshold, which bounds it from above.
+  /// Whether the event was reached; else the probability is that of the last threshold, which bounds it from
+  /// above.
   [[nodiscard]] bool reached() const noexcept { return reached_; }
   [[nodiscard]] double probability() const noexcept;
-  /// Coefficient of variation, by the scatter over the families of cases that descend from one case of the first level: it contains the
-  /// correlation along chains and between levels.                                                     theory.md (S.5)
+  /// Coefficient of variation, by the scatter over the families of cases that descend from one case of the
+  /// first level: it contains the
+  /// correlation along chains and between levels.                                             theory.md (S.5)
   [[nodiscard]] double variation() const noexcept;
-  /// 95 % interval of the probability. With one level that of a share; with more, Student's t in the logarithm, with as many degrees of
-  /// freedom as there are effective families. Where the event was not reached: from zero to a bound that holds more often.
+  /// 95 % interval of the probability. With one level that of a share; with more, Student's t in the
+  /// logarithm, with as many degrees of freedom as there are effective families. Where the event was not
+  /// reached: from zero to a bound that holds more often.
   [[nodiscard]] ProbabilityInterval interval() const;
   [[nodiscard]] const std::vector<Level>& levels() const noexcept { return levels_; }
 

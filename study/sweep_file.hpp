@@ -20,13 +20,13 @@ struct Limit {
   double bound = 0.0;     ///< in the field's unit
 };
 
-/// How failure probabilities that are small are approached.                                        theory.md (S.5)
+/// How failure probabilities that are small are approached.                                   theory.md (S.5)
 struct SubsetSettings {
   double level_probability = 0.1;  ///< share of the cases of a level from which the next one starts, (0, 0.5]
   int most_levels = 12;
 };
 
-/// A grid of which only those cases are run that tell where a field changes.                           theory.md (S.7)
+/// A grid of which only those cases are run that tell where a field changes.                  theory.md (S.7)
 struct RefineSettings {
   std::size_t field = 0;  ///< index of what is collected
   RefinedGrid::Settings grid;

@@ -19,7 +19,8 @@ struct TraceNumbers {
   [[nodiscard]] double correlation_of(const std::string& one, const std::string& other) const;
 };
 
-/// Reads `final` of a trace.json, or `fit` of a fit.json: numbers that have a standard error. Throws base::InputError.
+/// Reads `final` of a trace.json, or `fit` of a fit.json: numbers that have a standard error. Throws
+/// base::InputError.
 [[nodiscard]] TraceNumbers read_trace_numbers(const std::filesystem::path& file);
 
 }  // namespace snare::study

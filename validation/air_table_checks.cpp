@@ -19,7 +19,8 @@ constexpr double mass = 8.9;  // [kg], Table 5
 
 constexpr PublishedLaw law_at_90 = published_laws[2];
 
-/// The shipped scenario with its probe that far beside the centre of mass [m], at a speed [m/s], run with a model of the wire.
+/// The shipped scenario with its probe that far beside the centre of mass [m], at a speed [m/s], run with a
+/// model of the wire.
 MotionResult meeting(const std::filesystem::path& data, const std::string& model, double speed, double offset,
                      const std::vector<std::string>& settings) {
   std::vector<base::Override> overrides;
@@ -36,8 +37,8 @@ MotionResult meeting(const std::filesystem::path& data, const std::string& model
 
 }  // namespace
 
-// Head-on, without damping: m v^2/2 = A d^3/3 + B d^2/2 + C d, F = A d^2 + B d + C there, impulse 2 m v. Where the
-// quadratic would pull (0.35 to 1.11 mm) our law is zero, which moves depth and force by 1e-3.
+// Head-on, without damping: m v^2/2 = A d^3/3 + B d^2/2 + C d, F = A d^2 + B d + C there, impulse 2 m v.
+// Where the quadratic would pull (0.35 to 1.11 mm) our law is zero, which moves depth and force by 1e-3.
 std::vector<Row> quadratic_law_rows(const std::filesystem::path& data) {
   std::vector<Row> rows;
   for (const double speed : {0.05, 0.1, 0.2}) {
@@ -64,7 +65,8 @@ std::vector<Row> quadratic_law_rows(const std::filesystem::path& data) {
   return rows;
 }
 
-// The paper: the law misses the peak force, the impulse is almost the same. Approach speed and offset are not printed.
+// The paper: the law misses the peak force, the impulse is almost the same. Approach speed and offset are not
+// printed.
 std::vector<Row> law_beside_wire_rows(const std::filesystem::path& data) {
   std::vector<Row> rows;
   for (const double speed : {0.05, 0.1, 0.2}) {

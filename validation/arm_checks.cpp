@@ -107,8 +107,8 @@ std::vector<Row> arm_conservation_rows() {
   return rows;
 }
 
-// The drives' work is integrated once more from the history, torque times rate by Boole's rule; that of a constant force
-// is the force times the way of the tip.
+// The drives' work is integrated once more from the history, torque times rate by Boole's rule; that of a
+// constant force is the force times the way of the tip.
 std::vector<Row> arm_work_rows() {
   std::vector<Row> rows;
   const PlanarLink link;
@@ -192,7 +192,8 @@ std::vector<Row> arm_frequency_rows() {
   return rows;
 }
 
-// (H + B) q'' + c = tau in the textbook's form by Runge and Kutta, beside ever stiffer gears: the difference goes as 1/K.
+// (H + B) q'' + c = tau in the textbook's form by Runge and Kutta, beside ever stiffer gears: the difference
+// goes as 1/K.
 std::vector<Row> rigid_limit_rows() {
   constexpr double end = 2.0, B = 2.0;
   const PlanarLink link;
@@ -261,8 +262,9 @@ std::vector<Row> amplitude_rows() {
   return rows;
 }
 
-// A base with one link, all at rest at first: the momentum is zero for ever, so the base's turn follows from the link's
-// whatever drives it: th' (I0 + I1 + m (b^2 + l^2 + 2 b l cos q)) + q' (I1 + m (l^2 + b l cos q)) = 0, m the reduced mass.
+// A base with one link, all at rest at first: the momentum is zero for ever, so the base's turn follows from
+// the link's whatever drives it: th' (I0 + I1 + m (b^2 + l^2 + 2 b l cos q)) + q' (I1 + m (l^2 + b l cos q))
+// = 0, m the reduced mass.
 std::vector<Row> floating_base_rows() {
   constexpr double m0 = 60.0, I0 = 20.0, b = 0.8, m1 = 25.0, I1 = 4.0, l = 0.9;
   ElasticArm arm;
@@ -334,7 +336,8 @@ std::vector<Row> jump_rows() {
         static_cast<double>(history.statistics.steps) / static_cast<double>(history.events.size()) + usable,
         Limit::absolute(60.0, "a bound of the work: any number of steps below it is fine")));
   }
-  // A load of 10 N m between the torques of the literal jump (0.5 and 19 N m): Filippov's solution rests at the jump.
+  // A load of 10 N m between the torques of the literal jump (0.5 and 19 N m): Filippov's solution rests at
+  // the jump.
   constexpr double at_jump = 0.04 * degree;
   for (const double w : {width, 0.1 * width}) {
     auto run = at_rest(one_joint_arm(0.01 * inertia, 1.0, table2_law(1.0, StiffnessReading::literal, w)),
@@ -446,8 +449,8 @@ std::vector<Row> tip_push_rows(const std::filesystem::path& arms) {
                 "", "conservation", Kind::closed_form, 0.0, history.energy_error + usable,
                 Limit::absolute(1e-4, "zero reference; the value is a share of the largest energy or work")));
   }
-  // Limp without friction. A push much shorter than the gears' periods moves the links alone: E = p H^-1 p/2, p = J^T P;
-  // when the gears have come to rest links and motors turn together: E = p (H + B)^-1 p/2.
+  // Limp without friction. A push much shorter than the gears' periods moves the links alone: E = p H^-1 p/2,
+  // p = J^T P; when the gears have come to rest links and motors turn together: E = p (H + B)^-1 p/2.
   for (multibody::ElasticJoint& joint : arm.arm.joints) {
     joint.friction = {};
     joint.back_drive = 0.0;

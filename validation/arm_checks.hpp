@@ -7,7 +7,8 @@
 
 namespace snare::validation {
 
-/// Arms with elastic joints: conservation, closed forms, the joint step of Abiko et al., jumps of its Table 2, pushes.
+/// Arms with elastic joints: conservation, closed forms, the joint step of Abiko et al., jumps of its Table
+/// 2, pushes.
 /// arms: folder of the shipped arm files. Takes some seconds.
 [[nodiscard]] std::vector<Check> arm_checks(const std::filesystem::path& arms);
 

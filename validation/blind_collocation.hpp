@@ -40,9 +40,10 @@ struct Unknowns {
 /// Planar extensible elastica by Hermite-Simpson collocation (Lobatto IIIA, fourth order) on either side of
 /// the contact. n is affine in S and r an integral, so only th and M are unknown in the nodes:
 ///   th' = kappa(M, S),  M' = -(1 + e(N, S)) n . nu(th),  n = n_0 - w (S - S_0) - [S > S_c] f
-/// with the globals n_0, f, S_c, S_0 (of a mount that slides its place instead) and six conditions on r and on contact, friction and mount. The mesh is
-/// stretched with S_0 and S_c. Newton with the analytic Jacobian: the nodes' band is eliminated by pivoting
-/// (which keeps boundary layers stable), the globals by their Schur complement.
+/// with the globals n_0, f, S_c, S_0 (of a mount that slides its place instead) and six conditions on r and
+/// on contact, friction and mount. The mesh is stretched with S_0 and S_c. Newton with the analytic Jacobian:
+/// the nodes' band is eliminated by pivoting (which keeps boundary layers stable), the globals by their Schur
+/// complement.
 class Collocation {
  public:
   /// The mesh for a wire that is touched at about this unstressed coordinate [m].

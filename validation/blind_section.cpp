@@ -182,7 +182,8 @@ Response Section::bend_fibres(double M, double S, double rate, double guess) con
   return {kappa, 1.0 / tangent, -by_S / tangent};
 }
 
-// N = EA e + EA rate (e - e_old), the elastic part split into h and the plastic 1 - h where the wire can yield.
+// N = EA e + EA rate (e - e_old), the elastic part split into h and the plastic 1 - h where the wire can
+// yield.
 Response Section::stretch(double N, double S, double rate) const {
   if (!yields_ && !viscous_) return {N / axial_, 1.0 / axial_, 0.0};
   const Place p = find(S);

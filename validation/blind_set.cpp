@@ -208,8 +208,8 @@ Eigen::VectorXd read_all(const std::vector<Perturbation>& doses, const Hidden& h
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
-/// Makes errors of the noise and of the pushes' places independent of equal size sigma: u = (a place's deviation) dF/d(place),
-/// so that sigma^2 + u u^T becomes sigma^2.
+/// Makes errors of the noise and of the pushes' places independent of equal size sigma: u = (a place's
+/// deviation) dF/d(place), so that sigma^2 + u u^T becomes sigma^2.
 class Places {
  public:
   Places(const Hidden& h, double highest_tension, const BlindDesign& design) {
@@ -238,8 +238,8 @@ class Places {
   Eigen::Index pushes_ = 0;
 };
 
-/// Deviations of a record with so many readings a leg: white noise, and a smooth one over the path where it is a replicate.
-/// Drawn at the finest readings, of which every record has its own.
+/// Deviations of a record with so many readings a leg: white noise, and a smooth one over the path where it
+/// is a replicate. Drawn at the finest readings, of which every record has its own.
 struct Deviations {
   std::vector<double> white;   // [N]
   std::vector<double> smooth;  // of the force [-]
@@ -307,7 +307,8 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
       throw std::invalid_argument("no blind effect " + one);
   }
   std::mt19937 random(7919u * seed + 17u);
-  // Noise of its own for every set: a seed whose noise happens to look like an effect must not count many times.
+  // Noise of its own for every set: a seed whose noise happens to look like an effect must not count many
+  // times.
   const auto place = [&](const std::string& one) {
     return static_cast<unsigned>(std::find(known.begin(), known.end(), one) - known.begin());
   };
@@ -375,8 +376,8 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
     const Places places(h, highest_tension, sized);
     base = places.white(base);
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(base);
-    // Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not linearly. Beside a length
-    // it moves it by more, and they are taken to the end.
+    // Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not
+    // linearly. Beside a length it moves it by more, and they are taken to the end.
     const int most_steps = base.cols() > 2 ? 40 : 2;
     const auto size_of = [&](const Eigen::VectorXd& changed) {
       Hidden fitted = h;

@@ -15,8 +15,8 @@ struct BlindSet {
   std::string effect;   ///< what is inside: a name of the catalogue, "none", "damage" or "drift"; several
                         ///< with "+" between them
   double amount = 0.0;  ///< of the (first) effect, in its own measure
-  /// Of its change of the forces over the errors of reading and placing, after the best fit of the base model's numbers: the
-  /// norm of V^(-1/2) (projected change); of several, each alone, the smallest.
+  /// Of its change of the forces over the errors of reading and placing, after the best fit of the base
+  /// model's numbers: the norm of V^(-1/2) (projected change); of several, each alone, the smallest.
   double size = 0.0;
   std::string key;                 ///< of the (first) effect's first number; empty: it is in no catalogue
   double truth = 0.0;              ///< of that number, in its unit
@@ -31,9 +31,9 @@ struct BlindDesign {
       0.0;  ///< standard deviation of the wire's length about the declared one [m]; where it is
             ///< > 0 the length is freed as well
   double position_deviation = 0.0;  ///< of every push's position about the declared one [m]; declared as well
-  /// Of three pushes so many records each, every one with a deviation of its own that goes with the force and is
-  /// correlated over a quarter of the travel, 1 % of it, beside the noise; nothing of this is declared. 1: six pushes, one
-  /// record each, with noise alone.
+  /// Of three pushes so many records each, every one with a deviation of its own that goes with the force and
+  /// is correlated over a quarter of the travel, 1 % of it, beside the noise; nothing of this is declared. 1:
+  /// six pushes, one record each, with noise alone.
   int replicates = 1;
 };
 
@@ -45,10 +45,10 @@ struct BlindDesign {
 [[nodiscard]] std::vector<std::string> effects_in(const std::string& name);
 
 /// Three positions, two slacks, load and unload at two speeds, normal noise; EI and EA of the wire off the
-/// declared ones by about 10 %. effect: one, or several joined by "+", each alone of that size. The same seed gives the same wire for
-/// every effect and size. size: wanted, > 0, in standard deviations of the noise (see BlindSet); effects with a largest size (a slipping
-/// mount) stay below it where they must. "none" ignores it.
-/// The design changes neither the wire nor the noise of the readings that two designs share.
+/// declared ones by about 10 %. effect: one, or several joined by "+", each alone of that size. The same seed
+/// gives the same wire for every effect and size. size: wanted, > 0, in standard deviations of the noise (see
+/// BlindSet); effects with a largest size (a slipping mount) stay below it where they must. "none" ignores
+/// it. The design changes neither the wire nor the noise of the readings that two designs share.
 [[nodiscard]] BlindSet make_blind_set(const std::string& effect, double size, unsigned seed,
                                       const BlindDesign& design = {});
 

@@ -6,8 +6,9 @@
 
 namespace snare::validation {
 
-/// A loose wire with one or several undeclared effects, and the pusher under it. SI units. The mounts stand at (0, 0)
-/// and (span, 0) and hold the tangent along +x; the bulge goes to +y. Every effect's default is "none".
+/// A loose wire with one or several undeclared effects, and the pusher under it. SI units. The mounts stand
+/// at (0, 0) and (span, 0) and hold the tangent along +x; the bulge goes to +y. Every effect's default is
+/// "none".
 struct BlindWire {
   double length = 0.0;  ///< unstressed length between the mounts L [m], > 0
   double span = 0.0;    ///< distance of the mounts [m], > 0; a span >= L gives a straight, taut wire

@@ -43,8 +43,9 @@ double zero_of(const Function& f, double low, double high) {
 
 }  // namespace
 
-// Tangent to a shaft of radius r (with the wire's) at theta_t = 2 acos(r/R), a wire is 2 sqrt(R^2 - r^2) + r (theta - theta_t) long
-// when it is taut; its tension gives the angle of the ring, and n of them its torque, n T r.                        (M.24)
+// Tangent to a shaft of radius r (with the wire's) at theta_t = 2 acos(r/R), a wire is 2 sqrt(R^2 - r^2) + r
+// (theta - theta_t) long
+// when it is taut; its tension gives the angle of the ring, and n of them its torque, n T r.           (M.24)
 std::vector<Row> tight_ring_rows(const std::filesystem::path& data) {
   const ScenarioRun run = run_of(data / "scenarios/snare_on_pin.toml",
                                  {as_strings, "duration_s=2.0", "damping.axial_time_s=0.001",
@@ -64,8 +65,8 @@ std::vector<Row> tight_ring_rows(const std::filesystem::path& data) {
                   std::abs(ring.joint_torque[0]) + run.usable(), Limit::relative(1e-3))};
 }
 
-// The shipped rigidizing by a snare that stands still and a stiff ball joint: the carriage's quintic by 125 mm in 2 s brings the plate
-// over the 120 mm to the face.
+// The shipped rigidizing by a snare that stands still and a stiff ball joint: the carriage's quintic by 125
+// mm in 2 s brings the plate over the 120 mm to the face.
 std::vector<Row> rigidizing_rows(const std::filesystem::path& data) {
   const ScenarioRun run =
       run_of(data / "scenarios/ssrms_rigidize.toml",
@@ -133,9 +134,10 @@ std::vector<Row> refined_capture_rows(const std::filesystem::path& data) {
   return rows;
 }
 
-// The payload of 500 kg at 10 mm/s and one wire in the end effector, one that stands still, three. A free payload is turned by what its
-// probe meets: with the impulse P at the arm p, which hardly turns, I w = p x P. Bodies a tenth of their tolerances: at those of its file the
-// first closes its energy to 2e-3 of the payload's only.
+// The payload of 500 kg at 10 mm/s and one wire in the end effector, one that stands still, three. A free
+// payload is turned by what its probe meets: with the impulse P at the arm p, which hardly turns, I w = p x
+// P. Bodies a tenth of their tolerances: at those of its file the first closes its energy to 2e-3 of the
+// payload's only.
 std::vector<Row> payload_rows(const std::filesystem::path& data) {
   constexpr double mass = 500.0, speed = 0.01, inertia = 415.0;
   const Eigen::Vector3d arm(0.1, 0.5, 0.0);
@@ -159,8 +161,9 @@ std::vector<Row> payload_rows(const std::filesystem::path& data) {
   return rows;
 }
 
-// The visitor of 1.3 t and one of 13 t rigidized, the first also by wires, and the capture by an arm on an attachment that gives, with
-// strings. With the ball joint alone the tolerances of bodies are a hundredth of the file's: the momentum error is proportional to them.
+// The visitor of 1.3 t and one of 13 t rigidized, the first also by wires, and the capture by an arm on an
+// attachment that gives, with strings. With the ball joint alone the tolerances of bodies are a hundredth of
+// the file's: the momentum error is proportional to them.
 std::vector<Row> visitor_rows(const std::filesystem::path& data) {
   std::vector<Row> rows;
   const double speed = Eigen::Vector3d(0.0028, -0.009, -0.025).norm();

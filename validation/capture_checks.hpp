@@ -7,8 +7,8 @@
 
 namespace snare::validation {
 
-/// Captures by snares: the ring's closed form, rigidizing, the shipped capture against finer tolerances and meshes, conservation in all
-/// that are shipped. Takes half a minute.
+/// Captures by snares: the ring's closed form, rigidizing, the shipped capture against finer tolerances and
+/// meshes, conservation in all that are shipped. Takes half a minute.
 [[nodiscard]] std::vector<Check> capture_checks(const std::filesystem::path& data);
 
 /// Rows of `capture_checks`.

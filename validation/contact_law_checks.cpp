@@ -80,7 +80,8 @@ std::vector<Row> hunt_crossley_rows() {
   return rows;
 }
 
-// k d + c d' that does not pull: e = exp(-b t), t the time until the force is zero (Schwager, Poeschel 2007), b = c/2m.
+// k d + c d' that does not pull: e = exp(-b t), t the time until the force is zero (Schwager, Poeschel 2007),
+// b = c/2m.
 std::vector<Row> dashpot_rows() {
   std::vector<Row> rows;
   constexpr double k = 3e4;
@@ -99,7 +100,8 @@ std::vector<Row> dashpot_rows() {
   return rows;
 }
 
-// F = K d^(3/2): d_max = (5 m v^2/(4 K))^(2/5), the contact lasts 2 d_max/v int_0^1 dx/sqrt(1 - x^(5/2)) = 2.9432 d_max/v.
+// F = K d^(3/2): d_max = (5 m v^2/(4 K))^(2/5), the contact lasts 2 d_max/v int_0^1 dx/sqrt(1 - x^(5/2)) =
+// 2.9432 d_max/v.
 std::vector<Row> hertz_rows() {
   constexpr double k = 1e9;
   constexpr double speed = 0.5;

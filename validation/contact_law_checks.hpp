@@ -6,8 +6,8 @@
 
 namespace snare::validation {
 
-/// Impacts by the fast simulators' contact laws against closed forms: restitution by Hunt-Crossley's and by the linear
-/// dashpot's law, Hertz's duration and peak. Takes a second.
+/// Impacts by the fast simulators' contact laws against closed forms: restitution by Hunt-Crossley's and by
+/// the linear dashpot's law, Hertz's duration and peak. Takes a second.
 [[nodiscard]] std::vector<Check> contact_law_checks();
 
 /// Rows of `contact_law_checks`.

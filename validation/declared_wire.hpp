@@ -17,7 +17,8 @@ namespace snare::validation {
   return wire;
 }
 
-/// The same between clamps 175 mm apart, pushed outward at `position` by a cylinder of `radius` (0: a knife edge). [m]
+/// The same between clamps 175 mm apart, pushed outward at `position` by a cylinder of `radius` (0: a knife
+/// edge). [m]
 [[nodiscard]] inline coupling::PushProblem declared_wire(double position, double radius) {
   coupling::PushProblem test;
   test.wire = declared_specification();

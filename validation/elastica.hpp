@@ -14,8 +14,8 @@ struct BuckledElastica {
   double crown_moment = 0.0;  ///< magnitude, EI times the curvature there [N m]
 };
 
-/// bending_stiffness: EI [N m^2], > 0; length: L [m], > 0; span: in (0, L) [m]. The modulus' relative error is
-/// about 1e-16 over the slack (L - span)/L.
+/// bending_stiffness: EI [N m^2], > 0; length: L [m], > 0; span: in (0, L) [m]. The modulus' relative error
+/// is about 1e-16 over the slack (L - span)/L.
 [[nodiscard]] BuckledElastica clamped_elastica(double bending_stiffness, double length, double span);
 [[nodiscard]] BuckledElastica pinned_elastica(double bending_stiffness, double length, double span);
 

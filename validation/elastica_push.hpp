@@ -52,8 +52,8 @@ struct ElasticaState {
 /// followed by adaptive steps.  Relative error of the force: below 1e-9, set by rounding (measured by
 /// changing pieces_per_side from 4 to 32, declared wire and inextensible limit alike).  Boundary layers
 /// sqrt(EI/T) thinner than a tenth of a piece lose digits: use more pieces. From a straight, unstretched wire
-/// the path cannot be started when EA l^2/EI exceeds about 1e9.  Throws std::invalid_argument for a value outside its
-/// range; when the path cannot be followed (a fold in travel) the state's report is not usable.
+/// the path cannot be started when EA l^2/EI exceeds about 1e9.  Throws std::invalid_argument for a value
+/// outside its range; when the path cannot be followed (a fold in travel) the state's report is not usable.
 [[nodiscard]] ElasticaState push(const ElasticaPush& problem, double travel);
 
 /// The same at several travels [m], in the order given, each continued from the one before. Ends with the
@@ -62,8 +62,8 @@ struct ElasticaState {
                                                    const std::vector<double>& travels);
 
 /// The path by pseudo arc length from the first touch, through folds in travel. Point contact only.
-/// step: length along the path, > 0, in the norm of the pusher's height over L and the root mean squares of the
-/// sections' heights over L and angles [rad]; count: states, the first touch included.
+/// step: length along the path, > 0, in the norm of the pusher's height over L and the root mean squares of
+/// the sections' heights over L and angles [rad]; count: states, the first touch included.
 [[nodiscard]] std::vector<ElasticaState> push_through_folds(const ElasticaPush& problem, double step,
                                                             int count);
 

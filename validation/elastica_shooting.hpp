@@ -31,9 +31,9 @@ struct System {
   MatrixXd jacobian;
 };
 
-// Unknowns z, dimensionless: the sections at the start of every piece (left side, then right side), n on the left, n on
-// the right, unstressed arc length of the contact (point: one; wrapped: both lift-off points), height of
-// the pusher. Lengths in units of L, forces in EI/L^2.
+// Unknowns z, dimensionless: the sections at the start of every piece (left side, then right side), n on the
+// left, n on the right, unstressed arc length of the contact (point: one; wrapped: both lift-off points),
+// height of the pusher. Lengths in units of L, forces in EI/L^2.
 class Shooting {
  public:
   explicit Shooting(const ElasticaPush& problem)
@@ -68,13 +68,15 @@ class Shooting {
   /// Compliance and natural curvature, over L.
   [[nodiscard]] const ElasticaLaw& law() const { return law_; }
 
-  /// The section at the start of a piece, as z has it; and the force of which the first component is unknown `at`.
+  /// The section at the start of a piece, as z has it; and the force of which the first component is unknown
+  /// `at`.
   [[nodiscard]] static ElasticaSection section(const VectorXd& z, Index piece) {
     return {z[4 * piece], z[4 * piece + 1], z[4 * piece + 2], z[4 * piece + 3]};
   }
   [[nodiscard]] static ElasticaForce force(const VectorXd& z, Index at) { return {z[at], z[at + 1]}; }
 
-  // Geometric curvature of the wire at the point contact over the cylinder's, 1 where the wire begins to wrap.
+  // Geometric curvature of the wire at the point contact over the cylinder's, 1 where the wire begins to
+  // wrap.
   [[nodiscard]] double relative_curvature(const VectorXd& z) const {
     const ElasticaSection p = section(z, pieces_);
     const double tension = section_forces(force(z, left_force()), p.angle).tension;
@@ -85,7 +87,8 @@ class Shooting {
   [[nodiscard]] System assemble(const VectorXd& z, bool wrapped, const Demand& demand) const;
   /// Newton's method from z, halved on the residual; z is the solution when the report is usable.
   [[nodiscard]] numerics::SolveReport solve(VectorXd& z, bool wrapped, const Demand& demand) const;
-  /// Sign of the Jacobian's determinant under control of the height (over L): it changes where a fold is passed.
+  /// Sign of the Jacobian's determinant under control of the height (over L): it changes where a fold is
+  /// passed.
   [[nodiscard]] bool determinant_positive(const VectorXd& z, bool wrapped, double height) const;
   /// The unloaded wire at its touch: z becomes the buckled, or the straight, shape without a force.
   [[nodiscard]] numerics::SolveReport start(VectorXd& z);

@@ -32,8 +32,9 @@ Row frequency_row(const std::string& name, const std::string& unit, const std::s
   return {"capture", name, unit, source, kind, reference, value, limit};
 }
 
-/// Exponents [1/s] of the sum of decaying oscillations that signals (channels x samples), `interval` [s] apart, consist of: the shift between two
-/// halves of what is in them (Juang and Pappa 1985, the eigensystem realization). keep: of the largest singular value, what still counts.
+/// Exponents [1/s] of the sum of decaying oscillations that signals (channels x samples), `interval` [s]
+/// apart, consist of: the shift between two halves of what is in them (Juang and Pappa 1985, the eigensystem
+/// realization). keep: of the largest singular value, what still counts.
 Eigen::VectorXcd exponents(const MatrixXd& signals, double interval, double keep) {
   const Index channels = signals.rows(), depth = signals.cols() / 2, width = signals.cols() - depth;
   MatrixXd now(channels * depth, width - 1), later(channels * depth, width - 1);
@@ -58,8 +59,9 @@ struct Watch {
   std::function<VectorXd(const MotionSample&)> see;
 };
 
-/// What a pulse makes of a motion from a state on, every column a time: half the difference of a pulse and its opposite, without the terms
-/// that go with the square of the pulse. With them the swing of one period a record, damped by 8.5e-4, appears damped by 3.3e-3.
+/// What a pulse makes of a motion from a state on, every column a time: half the difference of a pulse and
+/// its opposite, without the terms that go with the square of the pulse. With them the swing of one period a
+/// record, damped by 8.5e-4, appears damped by 3.3e-3.
 MatrixXd answer(const scenario::NamedMotion& asked, const coupling::MotionState& state,
                 coupling::FrameLoad load, const Watch& watch) {
   coupling::MotionOptions options = asked.options;
@@ -105,8 +107,8 @@ struct Agreement {
 };
 // A held visitor swings linearly: the parts of the third order in the pulse and the integrator's errors stay.
 constexpr Agreement linear{1e-4, 1e-3};
-// In strings the state drifts while it is watched, and the answer depends on the size of the pulse: 2 and 2.5 percent of the damping at a
-// third of the pulse and at the whole.
+// In strings the state drifts while it is watched, and the answer depends on the size of the pulse: 2 and 2.5
+// percent of the damping at a third of the pulse and at the whole.
 constexpr Agreement drifting{0.01, 0.05};
 
 /// A row for each of these frequencies [Hz] by eigenvalues: that of the answer which is nearest.

@@ -33,8 +33,9 @@ constexpr double thickness = 6.0 * mm;
 constexpr double span = 40.0 * mm;
 constexpr double cylinder_radius = 5.0 * mm;
 
-/// A thick steel wire between clamps as ground (it gives by 0.3 um under 10 N, and rings at 1 kHz, damped), and on its
-/// middle a cylinder of 1 kg across it, that does not turn and slides along its own axis z: a flat block.
+/// A thick steel wire between clamps as ground (it gives by 0.3 um under 10 N, and rings at 1 kHz, damped),
+/// and on its middle a cylinder of 1 kg across it, that does not turn and slides along its own axis z: a flat
+/// block.
 Motion block_on_wire() {
   wire::WireSpecification w = declared_specification();
   w.diameter = thickness;
@@ -113,7 +114,8 @@ std::vector<Row> incline_rows() {
   rows.push_back({"friction", "block at 0.9 of the friction angle, creep in 10 s", "m", "Coulomb: rest",
                   Kind::closed_form, 0.0, std::abs(rest.late - rest.early),
                   Limit::absolute(1e-9, "zero reference; a thousandth of the displacement of the bristle")});
-  // The smooth law carries mu_static cos(a) m g only while it slides at static_speed x, x (3 - x^2)/2 = tan(a)/mu_s.
+  // The smooth law carries mu_static cos(a) m g only while it slides at static_speed x, x (3 - x^2)/2 =
+  // tan(a)/mu_s.
   {
     motion.contacts[0].friction.law = coupling::ContactFriction::smooth;
     double x = 0.5;
@@ -162,7 +164,8 @@ std::vector<Row> stopping_block_rows() {
   return rows;
 }
 
-// A cylinder that rolls down a wire without sliding: x'' = g sin a/(1 + I/(m R^2)), R to the wire's centreline.
+// A cylinder that rolls down a wire without sliding: x'' = g sin a/(1 + I/(m R^2)), R to the wire's
+// centreline.
 std::vector<Row> rolling_rows() {
   Motion motion = block_on_wire();
   constexpr double angle = 20.0 * degree;
@@ -187,9 +190,9 @@ std::vector<Row> rolling_rows() {
            Kind::closed_form, expected, found, Limit::relative(1e-3)}};
 }
 
-// A mass on a belt, held by a spring K: seen from the belt, the spring's far end moves at v. In the slip the mass swings
-// about mu_d N/K with the frequency w = sqrt(K/m), from D = (mu_s - mu_d) N/K beyond it at the speed v; it sticks again
-// where its speed is v the next time, at -D.
+// A mass on a belt, held by a spring K: seen from the belt, the spring's far end moves at v. In the slip the
+// mass swings about mu_d N/K with the frequency w = sqrt(K/m), from D = (mu_s - mu_d) N/K beyond it at the
+// speed v; it sticks again where its speed is v the next time, at -D.
 std::vector<Row> stick_slip_rows() {
   Motion motion = block_on_wire();
   constexpr double stiffness = 400.0;
@@ -252,8 +255,8 @@ std::vector<Row> stick_slip_rows() {
 
 namespace {
 
-/// The pusher goes 2 mm in and comes back, slowly; the static wire does the same on the same mesh. Friction of one
-/// coefficient, or strands.
+/// The pusher goes 2 mm in and comes back, slowly; the static wire does the same on the same mesh. Friction
+/// of one coefficient, or strands.
 std::vector<Row> reversed_push(coupling::PushProblem test, const std::string& name,
                                const std::vector<double>& stations) {
   constexpr double depth = 2.0 * mm;

@@ -6,8 +6,8 @@
 
 namespace snare::validation {
 
-/// Friction in motion: rest and sliding on an incline, a block that stops, rolling, stick-slip, slow pushes with their
-/// friction reversed beside the static wire. Takes some seconds.
+/// Friction in motion: rest and sliding on an incline, a block that stops, rolling, stick-slip, slow pushes
+/// with their friction reversed beside the static wire. Takes some seconds.
 [[nodiscard]] std::vector<Check> friction_checks();
 
 /// Rows of `friction_checks`.

@@ -80,8 +80,8 @@ std::vector<Row> welded_top_rows() {
                  Limit::absolute(1e-6, "zero reference; the value is a share of the kinetic energy"))};
 }
 
-// A straight wire on a heavy body that spins about its middle: EA u'' = -m w^2 x between fixed ends, N = m w^2 (l^2/24 -
-// x^2/2), so that either mount presses with m w^2 l^2/12.
+// A straight wire on a heavy body that spins about its middle: EA u'' = -m w^2 x between fixed ends, N = m
+// w^2 (l^2/24 - x^2/2), so that either mount presses with m w^2 l^2/12.
 std::vector<Row> moving_mount_rows() {
   constexpr double length = 0.2, spin = 6.0;
   wire::RodInMotion rod;

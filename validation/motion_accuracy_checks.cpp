@@ -112,7 +112,8 @@ std::vector<Row> balance_rows() {
          conserved, Kind::closed_form, 0.0, value_of(r, r.energy.integrator / energy),
          Limit::absolute(1e-3, "zero reference; the value is a share of the energy of the impact")});
   }
-  // A Kelvin-Voigt time that quiets nothing but the axial modes of a few elements; without it see undamped_impact_rows.
+  // A Kelvin-Voigt time that quiets nothing but the axial modes of a few elements; without it see
+  // undamped_impact_rows.
   rows.push_back(resolved_impact_row("damped by 1e-7 s", 1e-7));
   MotionOptions options;
   options.duration = 0.3;
@@ -337,7 +338,8 @@ std::vector<Row> snap_through_rows() {
   return rows;
 }
 
-// Of length L, folded tightly: v^2 = g x (2 L - x)/(L - x) after a fall x of the free end when nothing is lost.
+// Of length L, folded tightly: v^2 = g x (2 L - x)/(L - x) after a fall x of the free end when nothing is
+// lost.
 std::vector<Row> folded_chain_rows() {
   constexpr double g = 9.81;
   constexpr double length = 0.5;

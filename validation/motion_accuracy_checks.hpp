@@ -4,8 +4,9 @@
 
 namespace snare::validation {
 
-/// What the integration of a motion costs in accuracy, and where a slow motion ends: energy of a conservative impact,
-/// balances of momentum and angular momentum, convergence with the tolerance, steps against the axial wave.
+/// What the integration of a motion costs in accuracy, and where a slow motion ends: energy of a conservative
+/// impact, balances of momentum and angular momentum, convergence with the tolerance, steps against the axial
+/// wave.
 [[nodiscard]] std::vector<Row> balance_rows();
 /// Energy of an impact without any damping, every wave resolved: half a minute.
 [[nodiscard]] std::vector<Row> undamped_impact_rows();

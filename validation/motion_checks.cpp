@@ -52,8 +52,9 @@ Motion buckled(const wire::RodInMotion& rod) {
   return motion;
 }
 
-/// Frequency [Hz] of the projection of the motion from its start on a shape of the vertices' displacements (3, n), from
-/// rising zero crossings by linear interpolation. `expected` sets duration (eight periods) and sampling.
+/// Frequency [Hz] of the projection of the motion from its start on a shape of the vertices' displacements
+/// (3, n), from rising zero crossings by linear interpolation. `expected` sets duration (eight periods) and
+/// sampling.
 double measured_frequency(Motion motion, const Matrix3Xd& shape, double expected, double speed,
                           int order = 5) {
   motion.wires[0].velocities = speed * shape;
@@ -79,7 +80,8 @@ double measured_frequency(Motion motion, const Matrix3Xd& shape, double expected
   return static_cast<double>(crossings.size() - 1) / (crossings.back() - crossings.front());
 }
 
-/// Material damping that quiets what the step does not resolve and moves a frequency f by (pi f tau)^2/2, below 1e-6.
+/// Material damping that quiets what the step does not resolve and moves a frequency f by (pi f tau)^2/2,
+/// below 1e-6.
 constexpr double faint = 1e-7;
 
 Row frequency_row(const std::string& group, const std::string& name, const std::string& source, Kind kind,
@@ -189,7 +191,8 @@ std::vector<Row> axial_wave_rows() {
 std::vector<Row> gravity_rows() {
   constexpr double g = 9.81;
   std::vector<Row> rows;
-  // A hanging chain: J0(2 omega sqrt(L/g)) = 0 (D. Bernoulli 1732); bending a millionth of the weight's stiffness.
+  // A hanging chain: J0(2 omega sqrt(L/g)) = 0 (D. Bernoulli 1732); bending a millionth of the weight's
+  // stiffness.
   {
     wire::WireSpecification w = declared_specification();
     w.bending_stiffness_override = 1e-8;
@@ -212,8 +215,8 @@ std::vector<Row> gravity_rows() {
                                    measured_frequency(motion, shape, expected, 1e-2, 2)));
     }
   }
-  // A rod falls from the horizontal about a pin: a physical pendulum of the length 2L/3, a quarter of its period
-  // T = 4 K(sin(pi/4)) sqrt(2L/3g).
+  // A rod falls from the horizontal about a pin: a physical pendulum of the length 2L/3, a quarter of its
+  // period T = 4 K(sin(pi/4)) sqrt(2L/3g).
   {
     wire::WireSpecification w = declared_specification();
     wire::RodInMotion rod = rod_of(w, 0.3, 0.3, 40);
@@ -248,8 +251,8 @@ std::vector<Row> gravity_rows() {
 }
 
 std::vector<Row> slow_push_rows() {
-  // A ball moved at 5 mm/s pushes the buckled wire outward at its middle; the static force at the same travel is that of
-  // a cylinder of the same radius on the same mesh.
+  // A ball moved at 5 mm/s pushes the buckled wire outward at its middle; the static force at the same travel
+  // is that of a cylinder of the same radius on the same mesh.
   const wire::WireSpecification w = declared_specification();
   constexpr double radius = 6.0 * mm;
   coupling::PushProblem test;

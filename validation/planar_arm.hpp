@@ -14,8 +14,8 @@ struct PlanarLink {
   double inertia = 0.9;  ///< about the centre of mass [kg m^2]
 };
 
-/// The double pendulum in the plane as textbooks write it (relative angles): H(q) and the velocity terms c(q, q').
-/// Shares nothing with the recursions of multibody/.
+/// The double pendulum in the plane as textbooks write it (relative angles): H(q) and the velocity terms c(q,
+/// q'). Shares nothing with the recursions of multibody/.
 [[nodiscard]] Eigen::Matrix2d planar_mass(const PlanarLink& first, const PlanarLink& second, double q2);
 [[nodiscard]] Eigen::Vector2d planar_bias(const PlanarLink& first, const PlanarLink& second, double q2,
                                           const Eigen::Vector2d& rate);
@@ -36,8 +36,8 @@ struct PlanarLink {
 [[nodiscard]] multibody::DeflectionLaw table2_law(double damping_factor, multibody::StiffnessReading reading,
                                                   double jump_width = 0.0);
 
-/// Torque [N m] and damping [N m s/deg] of Table 2 at a deflection in degrees, written down once more. literal: K times
-/// the deflection; else the slope.
+/// Torque [N m] and damping [N m s/deg] of Table 2 at a deflection in degrees, written down once more.
+/// literal: K times the deflection; else the slope.
 [[nodiscard]] double table2_torque(double degrees, bool literal);
 [[nodiscard]] double table2_damping(double degrees);
 

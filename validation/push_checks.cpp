@@ -57,7 +57,8 @@ struct Normalised {
   double deflection;  // y / (l sqrt(delta))
 };
 
-/// delta is the end shortening of the wire's stretched length, so that the little it stretches does not count.
+/// delta is the end shortening of the wire's stretched length, so that the little it stretches does not
+/// count.
 Normalised normalise(const PushProblem& test, const coupling::PushPoint& p, double height) {
   const double l = test.mount.span;
   const double tension = 0.5 * (p.tension_left + p.tension_right);

@@ -62,7 +62,8 @@ std::vector<Row> drive_rows(const std::filesystem::path& file, const std::filesy
   const RecordTrace t = identification::trace_records(set);
   const double before = t.base.heldout.empty() ? not_computed : t.base.heldout.front().rmse;
   const double after = t.final.heldout.empty() ? not_computed : t.final.heldout.front().rmse;
-  // The authors' filter is Chebyshev's and theirs at the same 40 Hz; with ours their own regression changes by 0.05 % of the force.
+  // The authors' filter is Chebyshev's and theirs at the same 40 Hz; with ours their own regression changes
+  // by 0.05 % of the force.
   return {
       {group,
        "force of inertia and viscous friction, of the readings (published with an offset, which takes 1 % of "
@@ -166,7 +167,8 @@ std::vector<Row> early_flight_rows(const std::filesystem::path& folder, const Fl
           truth.stiffness <= *wire->upper)};
 }
 
-/// Flights on an arm whose attachment gives, and on one that is rigid as declared: data/records/flight_attachment.toml.
+/// Flights on an arm whose attachment gives, and on one that is rigid as declared:
+/// data/records/flight_attachment.toml.
 std::vector<Row> attachment_rows(const std::filesystem::path& folder) {
   const std::string group = "an attachment of the arm that gives, traced in a flight";
   const std::string source =

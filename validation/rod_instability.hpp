@@ -40,7 +40,8 @@ struct HelicalBuckling {
 /// tension: T [N], > -4 pi^2 B/L^2.
 [[nodiscard]] double critical_torque_clamped(double bending_stiffness, double tension, double length);
 
-/// The same [N m] with the ends free to turn about transverse axes: M^2 = 4 B T + 4 pi^2 B^2/L^2 (Greenhill 1883).
+/// The same [N m] with the ends free to turn about transverse axes: M^2 = 4 B T + 4 pi^2 B^2/L^2 (Greenhill
+/// 1883).
 [[nodiscard]] double critical_torque_pinned(double bending_stiffness, double tension, double length);
 
 /// Total twist at which a naturally straight rod closed to a ring leaves its plane: 2 pi sqrt(3) B/C [rad]

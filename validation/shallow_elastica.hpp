@@ -6,11 +6,12 @@ namespace snare::validation {
 ///
 ///   w'''' + P w'' = f delta(x - s),  w = w' = 0 at 0 and 1,  1/2 int w'^2 dx = 1
 ///
-/// in units of the span L, with delta = end shortening over L: w in L sqrt(delta), f = F L^2/(EI sqrt(delta)),
-/// P = compression L^2/EI (negative: tension), a = w(s), s the load's position over the span.
+/// in units of the span L, with delta = end shortening over L: w in L sqrt(delta), f = F L^2/(EI
+/// sqrt(delta)), P = compression L^2/EI (negative: tension), a = w(s), s the load's position over the span.
 ///
 /// With G(P) the deflection at the load for f = 1, int w'^2 = f^2 dG/dP (the compliance's derivative with
-/// respect to the geometric stiffness), hence f = +-sqrt(2/G'), a = f G: closed form, no quadrature. All is dimensionless.
+/// respect to the geometric stiffness), hence f = +-sqrt(2/G'), a = f G: closed form, no quadrature. All is
+/// dimensionless.
 struct ShallowState {
   double compression = 0.0;  ///< P [-]
   double force = 0.0;        ///< f [-], positive when it pushes with the bulge

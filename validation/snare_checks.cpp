@@ -46,8 +46,9 @@ coupling::MotionBody machine(const std::string& name, const Vector3d& start,
   return body;
 }
 
-/// What changes the shipped constraint test into that of the end effector of twice the size, at the same speeds and stresses:
-/// lengths and times by 2, masses and torques by 8, and so on.                                                     (M.34)
+/// What changes the shipped constraint test into that of the end effector of twice the size, at the same
+/// speeds and stresses:
+/// lengths and times by 2, masses and torques by 8, and so on.                                         (M.34)
 std::vector<std::string> twice_as_large() {
   std::vector<std::string> settings{
       "duration_s=19.8",
@@ -150,7 +151,8 @@ std::vector<Row> ring_two_ways_rows(const std::filesystem::path& data, const std
   return rows;
 }
 
-// The arm's end counts as 50 kg, 200 kg m^2 at 2 m; its spring does next to nothing in the 0.15 s of the contact.
+// The arm's end counts as 50 kg, 200 kg m^2 at 2 m; its spring does next to nothing in the 0.15 s of the
+// contact.
 std::vector<Row> bench_rows(const std::filesystem::path& data) {
   constexpr double k = 1.0e4, m = 40.0, speed = 0.05, pi = 3.14159265358979323846;
   const auto restitution = [&](double delay, bool fixed) {
@@ -178,8 +180,8 @@ std::vector<Row> bench_rows(const std::filesystem::path& data) {
   return rows;
 }
 
-// Smooth friction mu(s)/s with mu(s) = mu x (3 - x^2)/2, x = s/s_static, below the static speed (M.9): the shaft creeps where it is the pull over the
-// sum of the normal forces.
+// Smooth friction mu(s)/s with mu(s) = mu x (3 - x^2)/2, x = s/s_static, below the static speed (M.9): the
+// shaft creeps where it is the pull over the sum of the normal forces.
 std::vector<Row> held_shaft_rows(const std::filesystem::path& data) {
   struct Course {
     double least = 1e9, most = -1e9, at_60 = 0.0, at_120 = 0.0, normal = 0.0;
@@ -215,7 +217,8 @@ std::vector<Row> held_shaft_rows(const std::filesystem::path& data) {
                 Limit::relative(0.05))};
 }
 
-// Sliding back through the middle along its axis, the pin feels nothing but the friction of what the wires press it with.
+// Sliding back through the middle along its axis, the pin feels nothing but the friction of what the wires
+// press it with.
 std::vector<Row> constraint_test_rows(const std::filesystem::path& data) {
   struct Reading {
     multibody::Wrench sensor;

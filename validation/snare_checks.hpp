@@ -7,8 +7,8 @@
 
 namespace snare::validation {
 
-/// The ring of a snare by a joint and by mounts that run its course; the bench with hardware in the loop; a shaft that wires hold for
-/// two minutes; the constraint test at half and at full scale.
+/// The ring of a snare by a joint and by mounts that run its course; the bench with hardware in the loop; a
+/// shaft that wires hold for two minutes; the constraint test at half and at full scale.
 [[nodiscard]] std::vector<Check> snare_checks(const std::filesystem::path& data);
 
 /// Rows of `snare_checks`. model: "stretched" or "quasi_static".

@@ -74,9 +74,9 @@ direction = "inward"
   return identification::parse_experiment("measured.toml", text, identification::parameters());
 }
 
-/// What is left beside the replicates' scatter: of an effect that was named the error, a fifth above it at most, as far as
-/// three replicates know it; where none was, the test against the replicates, which five alone with 4.9 degrees of freedom of
-/// their smooth part let pass or not, whatever the ratio of the two.
+/// What is left beside the replicates' scatter: of an effect that was named the error, a fifth above it at
+/// most, as far as three replicates know it; where none was, the test against the replicates, which five
+/// alone with 4.9 degrees of freedom of their smooth part let pass or not, whatever the ratio of the two.
 Row scatter_row(const identification::Trace& t, const std::string& group, const std::string& source) {
   constexpr double most_over_scatter = 1.2;
   const double sigma = t.noise.sigma.empty() ? 1.0 : t.noise.sigma.front();
@@ -110,8 +110,8 @@ std::vector<Row> measured_rows(const std::vector<std::filesystem::path>& files, 
   const std::string source = "measured: pulsevad-optimal, three-point bending of strands (replicates)";
   std::string answer =
       t.selected.empty() ? "nothing" : fmt::format("{}", fmt::join(t.selected_classes.front(), " or "));
-  // An engineer's reading of the curves: group 4 softens as strands do that let go, group 5 is as straight as its
-  // replicates are alike.
+  // An engineer's reading of the curves: group 4 softens as strands do that let go, group 5 is as straight as
+  // its replicates are alike.
   const bool told = t.kind != identification::VerdictKind::not_explained;
   const bool one_of_the_strands =
       t.selected.empty() || t.selected == std::vector<std::string>{"strand_hysteresis"};

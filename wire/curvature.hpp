@@ -33,8 +33,8 @@ using Turn = TurnOf<double>;
 template <class S>
 [[nodiscard]] TurnOf<S> make_turn(const Vector3<S>& before, const Vector3<S>& after);
 
-/// First derivatives of a scalar of a vertex by the edge vectors a (before), b (after) [m] and their twist angles [rad]: each in the unit of the
-/// scalar over that.
+/// First derivatives of a scalar of a vertex by the edge vectors a (before), b (after) [m] and their twist
+/// angles [rad]: each in the unit of the scalar over that.
 template <class S>
 struct PairGradientOf {
   Vector3<S> a = Vector3<S>::Zero();
@@ -198,7 +198,8 @@ template <class S>
           -0.5 * turn.binormal.dot(before.first + after.first)};
 }
 
-// (W.24) with t' = (I - t t^T) a'/|a| and likewise u', c' = t'.u + t.u', and directors that turn by theta' about t, u:
+// (W.24) with t' = (I - t t^T) a'/|a| and likewise u', c' = t'.u + t.u', and directors that turn by theta'
+// about t, u:
 //   kb' = [2 (t' x u + t x u') - c' kb]/chi,
 //   kappa_1' = 1/2 [kb'.(m2_- + m2_+) - theta_-' kb.m1_- - theta_+' kb.m1_+],
 //   kappa_2' = -1/2 [kb'.(m1_- + m1_+) + theta_-' kb.m2_- + theta_+' kb.m2_+].
@@ -304,7 +305,8 @@ template <class S>
 //   |a|^2 d2kappa/da2 = -(A mean^T + mean A^T) - kappa/chi (I - t t^T) + 1/2 kb w_-^T,
 //   |b|^2 d2kappa/db2 = -(B mean^T + mean B^T) - kappa/chi (I - u u^T) + 1/2 kb w_+^T,
 //   |a||b| d2kappa/da db = -A mean^T - mean B^T - kappa/chi (I + t u^T) - [s]_x/chi,
-// where of kb w^T the symmetric part is taken. By an edge and an angle (v of the angle's edge), and by angles:
+// where of kb w^T the symmetric part is taken. By an edge and an angle (v of the angle's edge), and by
+// angles:
 //   |a| d2kappa/da dtheta = 1/2 (kb.v) mean - u x v/chi,   |b| d2kappa/db dtheta = 1/2 (kb.v) mean + t x
 //     v/chi,
 //   d2kappa/dtheta^2 = -1/2 kb.w,   d2kappa/dtheta_- dtheta_+ = 0.

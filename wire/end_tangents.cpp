@@ -24,8 +24,8 @@ double bending_stiffness(const PlanarRodProperties& p, bool left) {
 
 }  // namespace
 
-// From the edge beside the end back to the end by the turn of half an edge, whose curvature is that of a section under the end's
-// moment.
+// From the edge beside the end back to the end by the turn of half an edge, whose curvature is that of a
+// section under the end's moment.
 std::array<Vector2d, 2> end_tangents(const PlanarRod& rod, const PlanarState& state) {
   const PlanarRodProperties& p = rod.properties();
   const Eigen::VectorXd moments = rod.moments(state);
@@ -42,8 +42,8 @@ std::array<Vector2d, 2> end_tangents(const PlanarRod& rod, const PlanarState& st
   return {tangent(true), tangent(false)};
 }
 
-// With t' = kappa_1 m1 + kappa_2 m2 and the bending moment M = EI_1 kappa_1 m2 - EI_2 kappa_2 m1 of the curvatures beyond the
-// natural ones.
+// With t' = kappa_1 m1 + kappa_2 m2 and the bending moment M = EI_1 kappa_1 m2 - EI_2 kappa_2 m1 of the
+// curvatures beyond the natural ones.
 std::array<Vector3d, 2> end_tangents(const SpatialRod& rod, const SpatialState& state) {
   const SpatialRodProperties& p = rod.properties();
   const CellTerms terms(p, rod.strains());

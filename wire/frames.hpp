@@ -28,8 +28,8 @@ template <class S>
                                                       const numerics::Vector3<S>& from,
                                                       const numerics::Vector3<S>& to);
 
-/// The director of a frame that is carried from one unit tangent to another without turning about it; it is made perpendicular
-/// and of unit length anew, so that round-off does not add up over many steps.
+/// The director of a frame that is carried from one unit tangent to another without turning about it; it is
+/// made perpendicular and of unit length anew, so that round-off does not add up over many steps.
 template <class S>
 [[nodiscard]] numerics::Vector3<S> transported(const numerics::Vector3<S>& director,
                                                const numerics::Vector3<S>& from,
@@ -46,9 +46,10 @@ template <class S>
   return turned<double>(frame.director, frame.tangent, angle);
 }
 
-/// Angle in (-pi, pi] by which the director of the frame before, carried to the tangent of the one after, must still turn
-/// about that tangent to become the director of the frame after [rad], plus the multiple of 2 pi that brings it
-/// nearest to `near`.                                        theory.md (W.21); Bergou et al. 2010, sec. 5.1
+/// Angle in (-pi, pi] by which the director of the frame before, carried to the tangent of the one after,
+/// must still turn about that tangent to become the director of the frame after [rad], plus the multiple of 2
+/// pi that brings it nearest to `near`.                                        theory.md (W.21); Bergou et
+/// al. 2010, sec. 5.1
 ///
 /// Given the value of the last state as `near`, it follows any number of turns as long as one step changes it
 /// by less than pi.

@@ -539,7 +539,8 @@ SectionMemory PlanarRod::remembered(const PlanarState& state) const {
     const Edge& edge = edges[base::at(e)];
     slide(p.axial_sliders, edge.length / edge.rest - 1.0, result.axial.data() + base::at(e) * axial);
   }
-  // Within the step the sliders went along with the vertices; what had slipped before belongs to the material.
+  // Within the step the sliders went along with the vertices; what had slipped before belongs to the
+  // material.
   if (state.memory != nullptr && state.memory->controls != state.controls) {
     const auto carry = [&](const std::vector<double>& old, std::vector<double>& now, std::size_t elements,
                            bool of_edges) {

@@ -90,8 +90,9 @@ class PlanarRod {
   /// Energy [J] alone.
   [[nodiscard]] double energy(const PlanarState& state) const;
 
-  /// Everything at once into `out`, whose storage is reused. wanted[k]: fill control_columns[k]. Springs of the mounts
-  /// are in; rigidly held unknowns are not yet applied, so that the gradient there is the reaction: see `hold_mounts`.
+  /// Everything at once into `out`, whose storage is reused. wanted[k]: fill control_columns[k]. Springs of
+  /// the mounts are in; rigidly held unknowns are not yet applied, so that the gradient there is the
+  /// reaction: see `hold_mounts`.
   void assemble(const PlanarState& state, const std::array<bool, 3>& wanted, RodAssembly& out) const;
 
   /// Holds the rigid positions: gradient entries of held unknowns become zero, their rows and columns those
@@ -101,7 +102,8 @@ class PlanarRod {
   /// Makes the entries of held unknowns zero; band: of any unit.
   void clear_held(Eigen::VectorXd& band) const;
 
-  /// Turning moment M_i at the vertices [N m], positive for turning left; the end values belong to the mounts.
+  /// Turning moment M_i at the vertices [N m], positive for turning left; the end values belong to the
+  /// mounts.
   [[nodiscard]] Eigen::VectorXd moments(const PlanarState& state) const;
   /// Axial force of every edge [N], tension positive.
   [[nodiscard]] Eigen::VectorXd tensions(const PlanarState& state) const;

@@ -44,9 +44,9 @@ void slide(const std::vector<SliderElement>& elements, double strain, double* sl
 [[nodiscard]] std::vector<SliderElement> yielding_section(double bending_stiffness, double diameter,
                                                           double yield_strain, double hardening);
 
-/// Friction of strands in bending as sliders: one, or of a breadth > 0 ten of equal stiffness, the logarithms of their
-/// slip curvatures at the middles of ten equal parts. Of the breadth 2 the moment is within 0.4 % of the continuous
-/// distribution's.
+/// Friction of strands in bending as sliders: one, or of a breadth > 0 ten of equal stiffness, the logarithms
+/// of their slip curvatures at the middles of ten equal parts. Of the breadth 2 the moment is within 0.4 % of
+/// the continuous distribution's.
 [[nodiscard]] std::vector<SliderElement> strand_sliders(const StrandFriction& friction);
 
 /// Slipped strains of all elements: bending ones a vertex, axial ones an edge, of the material that is there
@@ -57,8 +57,9 @@ struct SectionMemory {
   std::vector<double> axial;    ///< [edge * elements + element] [-]
 };
 
-/// Carries values at the mesh's vertices (or, `of_edges`, at the middles of its edges) over to where other controls put
-/// them, by linear interpolation in the material coordinate; material that comes in at a mount is virgin (zero). In their units.
+/// Carries values at the mesh's vertices (or, `of_edges`, at the middles of its edges) over to where other
+/// controls put them, by linear interpolation in the material coordinate; material that comes in at a mount
+/// is virgin (zero). In their units.
 [[nodiscard]] std::vector<double> carried_over(const MaterialMesh& mesh, const std::vector<double>& values,
                                                int components, bool of_edges, const Controls& from,
                                                const Controls& to);

@@ -60,8 +60,9 @@ struct CellTerms {
   bool directed;           ///< not round, or naturally curved
 };
 
-/// Adds bending and twisting of a cell of length l [m] with a mount's flexibility [rad/(N m)] in series; its turn is set.
-///                                                                                           theory.md (W.6), (W.27)
+/// Adds bending and twisting of a cell of length l [m] with a mount's flexibility [rad/(N m)] in series; its
+/// turn is set.
+///                                                                                    theory.md (W.6), (W.27)
 template <class S>
 void add_bending(const DirectorsOf<S>& before, const DirectorsOf<S>& after, const S& l, double flexibility,
                  const CellTerms& terms, SpatialCellOf<S>& cell);
@@ -70,7 +71,8 @@ template <class S>
 void add_twisting(const S& tau, const S& l, double flexibility, const CellTerms& terms,
                   SpatialCellOf<S>& cell);
 
-/// Edge e at a state, between its vertices; and a mount in the place of an edge, with its direction and directors if it orients.
+/// Edge e at a state, between its vertices; and a mount in the place of an edge, with its direction and
+/// directors if it orients.
 [[nodiscard]] SpatialEdge edge_at(int e, const MaterialMesh& mesh, const SpatialState& state,
                                   const CellTerms& terms);
 [[nodiscard]] SpatialEdge mount_edge(const SpatialEnd& end, const std::optional<Frame>& frame,

@@ -26,8 +26,8 @@ struct SpatialState {
   std::vector<double> reference_twist;  ///< m of every vertex [rad]
 };
 
-/// Sets the unknowns [m, rad] and carries the reference frames to the new tangents; the reference twist follows
-/// without jumps while it changes by less than pi a step at every vertex.
+/// Sets the unknowns [m, rad] and carries the reference frames to the new tangents; the reference twist
+/// follows without jumps while it changes by less than pi a step at every vertex.
 void accept(SpatialState& state, const Eigen::VectorXd& q);
 
 /// Adds a step [m, rad] to the unknowns.

@@ -11,7 +11,8 @@ namespace snare::wire {
 enum class Construction { solid, strand };
 
 /// Friction between the strands of a rope in bending: beside EI, the bending stiffness with slipping strands,
-/// a stiffness that acts until the curvature has changed by slip_curvature and slides then; or whose shares slide one
+/// a stiffness that acts until the curvature has changed by slip_curvature and slides then; or whose shares
+/// slide one
 /// after the other, the logarithms of their curvatures evenly spread over 2 breadth.         theory.md (W.13)
 struct StrandFriction {
   double extra_stiffness = 0.0;  ///< of all while they stick [N m^2], > 0
@@ -94,7 +95,8 @@ struct MountSpecification {
 
  private:
   static double in_series(const std::optional<double>& each, double own) {
-    // 1e-11 m/N moves a mount by 10 nm under 1 kN: rigid, and a stiffer spring would only spoil the equations.
+    // 1e-11 m/N moves a mount by 10 nm under 1 kN: rigid, and a stiffer spring would only spoil the
+    // equations.
     const bool rigid = own < 1e-11 && own > -1e-11;
     if (rigid) return each.value_or(std::numeric_limits<double>::infinity());
     return 1.0 / (own + (each ? 1.0 / *each : 0.0));

@@ -20,7 +20,8 @@ struct HeatMap {
   double low = 0.0, high = 1.0;  ///< values of the ends of the colours
 };
 
-/// As an SVG drawing: dark to light from low to high (viridis: van der Walt, Smith 2015), nothing where a cell is not known.
+/// As an SVG drawing: dark to light from low to high (viridis: van der Walt, Smith 2015), nothing where a
+/// cell is not known.
 /// Throws std::invalid_argument where numbers are not finite or do not fit together.
 [[nodiscard]] std::string heat_map(const HeatMap& map);
 

@@ -12,7 +12,8 @@ namespace snare::app {
 /// Pictures of a motion: wires, bodies, shapes, rings, and arms from joint to joint.
 class MotionPictures {
  public:
-  /// `drawn`: what carriers take along; empty: the shapes of the motion's contacts. The motion and the samples must outlive this.
+  /// `drawn`: what carriers take along; empty: the shapes of the motion's contacts. The motion and the
+  /// samples must outlive this.
   MotionPictures(const coupling::Motion& motion, const std::vector<coupling::MotionSample>& samples,
                  std::vector<scenario::DrawnLines> drawn);
 

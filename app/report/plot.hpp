@@ -15,8 +15,10 @@ enum class AxesScale {
 };
 
 enum class Palette {
-  categorical,  ///< unrelated curves: black, blue, vermillion, ... (Okabe and Ito 2008, safe for colour-blind readers)
-  sequential  ///< a family in order, e.g. shapes along a push: dark to light, from lowest to highest colour index
+  /// unrelated curves: black, blue, vermillion, ... (Okabe and Ito 2008, safe for colour-blind readers)
+  categorical,
+  /// a family in order, e.g. shapes along a push: dark to light, from lowest to highest colour index
+  sequential
 };
 
 /// First colours of the categorical palette.

@@ -2,8 +2,8 @@
 
 #include <string_view>
 
-/// Files that every report page carries; built into the command by cmake/EmbedText.cmake, so that an installed
-/// command needs nothing beside it.
+/// Files that every report page carries; built into the command by cmake/EmbedText.cmake, so that an
+/// installed command needs nothing beside it.
 namespace snare::app::report_assets {
 
 extern const std::string_view d3_script;     ///< D3 3.5, BSD-3-Clause, from Debian's libjs-d3

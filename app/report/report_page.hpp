@@ -60,7 +60,8 @@ struct KeyFigure {
 /// A report of one self-contained HTML page: no request leaves it, so it opens offline and can be mailed.
 ///
 /// Every text is plain text and is escaped. Plots are drawn in the reader's browser by D3, which is inlined,
-/// see docs/decisions/license-and-libraries.md#plots-of-report-pages; half plots added one after the other share rows.
+/// see docs/decisions/license-and-libraries.md#plots-of-report-pages; half plots added one after the other
+/// share rows.
 class ReportPage {
  public:
   ReportPage(std::string title, std::string subtitle);
@@ -74,7 +75,8 @@ class ReportPage {
   /// A remark in a box: something stopped, a verdict.
   void callout(std::string_view text, Tone tone);
 
-  /// What stands before everything else: that the results are a part of what was asked for, and what is doubtful about them.
+  /// What stands before everything else: that the results are a part of what was asked for, and what is
+  /// doubtful about them.
   void doubts(const std::vector<std::string>& warnings, bool interrupted);
 
   void key_figures(const std::vector<KeyFigure>& figures);
@@ -82,8 +84,8 @@ class ReportPage {
   /// Throws std::invalid_argument when a row and the columns differ in length.
   void table(const Table& table);
 
-  /// Throws std::invalid_argument, naming plot, curve and index, when a value is not finite or lengths differ.
-  /// A plot without any point is left out.
+  /// Throws std::invalid_argument, naming plot, curve and index, when a value is not finite or lengths
+  /// differ. A plot without any point is left out.
   void line_plot(const PlotSpecification& plot);
 
   /// A scene, drawn by three.js, or flat where the browser has no WebGL.

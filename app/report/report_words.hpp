@@ -29,8 +29,8 @@ inline constexpr const char* absent = "\u2013";  ///< stands where a value is mi
 [[nodiscard]] std::string spaced(std::string name);
 /// {"yield stress", "MPa"} of plasticity.yield_stress_MPa.
 [[nodiscard]] std::pair<std::string, std::string> name_and_unit(const std::string& key);
-/// A number and its 95 % interval, which may be open at an end, as two cells with the digits that the interval
-/// leaves meaningful.
+/// A number and its 95 % interval, which may be open at an end, as two cells with the digits that the
+/// interval leaves meaningful.
 [[nodiscard]] std::vector<Cell> value_cells(std::optional<double> value, std::optional<double> lower,
                                             std::optional<double> upper);
 /// The same of a fitted number, with words where it stands on its bound or is not determined.

@@ -5,8 +5,8 @@
 
 namespace snare::app {
 
-/// What the tracing says of the published curves at the range that the experiment file assumes: a section of the page of
-/// `snare reproduce`. Nothing without a trace.
+/// What the tracing says of the published curves at the range that the experiment file assumes: a section of
+/// the page of `snare reproduce`. Nothing without a trace.
 void add_evidence(ReportPage& page, const Reproduction& result);
 
 }  // namespace snare::app

@@ -13,7 +13,8 @@ namespace snare::app {
 /// Force and tangent stiffness at all positions: published beside the best model.
 void add_overview(ReportPage& page, const Reproduction& result);
 
-/// The section of series k: published law, what stopped, forces, residuals, stiffness, shapes, tension, moment.
+/// The section of series k: published law, what stopped, forces, residuals, stiffness, shapes, tension,
+/// moment.
 void add_series(ReportPage& page, const Reproduction& result, std::size_t k);
 
 }  // namespace snare::app

@@ -53,7 +53,8 @@ std::optional<double> overall_sigma(const Reproduction& result) {
   return std::sqrt(sum / count);
 }
 
-/// The verdict of the tracing where no map of explanations stands above it; until it has ended, the error of the best model over the scatter.
+/// The verdict of the tracing where no map of explanations stands above it; until it has ended, the error of
+/// the best model over the scatter.
 void add_verdict(ReportPage& page, const Reproduction& result) {
   if (result.map) return;
   if (result.trace) {

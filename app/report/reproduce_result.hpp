@@ -61,8 +61,8 @@ struct Reproduction {
   std::vector<std::string> warnings;     ///< doubts about the models
   bool interrupted = false;              ///< only a part of the result was computed
 
-  /// The model of least overall error, complete ones first, since an error over less is no smaller error; null when
-  /// no model has one.
+  /// The model of least overall error, complete ones first, since an error over less is no smaller error;
+  /// null when no model has one.
   [[nodiscard]] const ReproducedModel* best_model() const;
 };
 

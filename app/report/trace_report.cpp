@@ -35,7 +35,8 @@ constexpr double dwarfing_ratio = 1.5, dwarfing_band_ratio = 6.0;
 /// Stages of the run shorter than this are not listed [s].
 constexpr double least_stage_seconds = 0.01;
 
-// ---- What the sections share ----------------------------------------------------------------------------------
+// ---- What the sections share
+// ----------------------------------------------------------------------------------
 
 /// Nothing was added: the final model is the base model.
 bool unchanged(const Trace& trace) {
@@ -51,7 +52,8 @@ Values forces(const std::vector<Prediction>& model, std::size_t k) {
   return k < model.size() ? model[k].force : Values{};
 }
 
-// ---- Sections -------------------------------------------------------------------------------------------------
+// ---- Sections
+// -------------------------------------------------------------------------------------------------
 
 std::string noise_source(const Trace& trace) {
   const identification::Noise& noise = trace.noise;
@@ -250,8 +252,8 @@ void add_before_and_after(ReportPage& page, const Trace& trace) {
   add_laws(page, trace);
 }
 
-/// What a residual is drawn against: the model's force in place of the reading's, since a reading's noise is in its
-/// residual, too.
+/// What a residual is drawn against: the model's force in place of the reading's, since a reading's noise is
+/// in its residual, too.
 enum class Abscissa { travel, model_force, time };
 
 const Axis axes[] = {{"travel", "mm"}, {"force of the model", "N"}, {"time", "s"}};  // of Abscissa

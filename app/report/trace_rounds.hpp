@@ -5,7 +5,8 @@
 
 namespace snare::app {
 
-/// Section "What could be missing": every pass over the catalogue with its scores, refits, reasons and classes.
+/// Section "What could be missing": every pass over the catalogue with its scores, refits, reasons and
+/// classes.
 void add_rounds(ReportPage& page, const identification::Trace& trace);
 
 }  // namespace snare::app

@@ -10,8 +10,8 @@ namespace snare::benchmarks {
 using numerics::BorderedSystem;
 using numerics::SparseMatrix;
 
-/// The whole matrix [K C; D E] of a bordered system with a pattern that is found once: each entry knows its slot, and
-/// a refill searches and sorts nothing.
+/// The whole matrix [K C; D E] of a bordered system with a pattern that is found once: each entry knows its
+/// slot, and a refill searches and sorts nothing.
 ///
 /// `to_sparse` makes the same matrix anew each time.
 class BorderedPattern {
@@ -26,9 +26,9 @@ class BorderedPattern {
   /// A matrix of order n + m with the pattern, values zero.
   [[nodiscard]] const SparseMatrix& pattern() const noexcept { return pattern_; }
 
-  /// Writes the values of `system` into `matrix`, which has the pattern. False, with `matrix` unusable, when the
-  /// system has other sizes, rows, anchors or columns, or a value that is not zero outside the pattern: make a new
-  /// pattern then.
+  /// Writes the values of `system` into `matrix`, which has the pattern. False, with `matrix` unusable, when
+  /// the system has other sizes, rows, anchors or columns, or a value that is not zero outside the pattern:
+  /// make a new pattern then.
   [[nodiscard]] bool refill(const BorderedSystem& system, SparseMatrix& matrix) const;
 
  private:

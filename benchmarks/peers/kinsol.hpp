@@ -23,9 +23,10 @@ struct KinsolOptions {
   int max_iterations = 100;
 };
 
-/// Newton's method with line search by KINSOL, linear systems by KLU, from u, which is overwritten by the last iterate.
-/// Exceptions thrown by the functions pass through; a failure of the iteration is reported. `residual_norm` is the
-/// largest residual over the tolerance. Throws LibraryError when SUNDIALS cannot be set up or refuses its input.
+/// Newton's method with line search by KINSOL, linear systems by KLU, from u, which is overwritten by the
+/// last iterate. Exceptions thrown by the functions pass through; a failure of the iteration is reported.
+/// `residual_norm` is the largest residual over the tolerance. Throws LibraryError when SUNDIALS cannot be
+/// set up or refuses its input.
 [[nodiscard]] numerics::SolveReport solve_kinsol(const NonlinearSystem& system, Eigen::VectorXd& u,
                                                  const KinsolOptions& options = {});
 

@@ -16,8 +16,9 @@ using Damping = std::function<Eigen::Vector3d(double penetration, double rate)>;
 /// A contact force as a function of penetration d [m] and its rate d' [m/s]:                theory.md (M.28)
 ///
 ///   F = max(0, S+(d) + D(d, d')) for d > 0, else 0;   S+ = max(0, S)
-/// S is a spring of law_form.hpp, D its damping. The force never pulls. The spring stores the integral of S+; the rest of the power,
-/// (F - S+) d', is lost and never negative: d' D >= 0, and where F is cut off, S+ + D < 0, so that d' < 0.
+/// S is a spring of law_form.hpp, D its damping. The force never pulls. The spring stores the integral of S+;
+/// the rest of the power, (F - S+) d', is lost and never negative: d' D >= 0, and where F is cut off, S+ + D
+/// < 0, so that d' < 0.
 class ContactLaw {
  public:
   ContactLaw() = default;
@@ -54,22 +55,25 @@ class ContactLaw {
 /// k >= 0 [N/m], c >= 0 [N s/m].
 [[nodiscard]] ContactLaw spring_dashpot(double k, double c);
 
-/// F = k d^p + c d^p |d'|^q sgn d'.                                     theory.md (L.2); Abiko et al., eq. 3, G(d) = d^p
-/// q = 1: Hunt and Crossley 1975. k >= 0 [N/m^p], p >= 1, c >= 0 [N s^q/m^(p+q)], q >= 1.
+/// F = k d^p + c d^p |d'|^q sgn d'.                                     theory.md (L.2); Abiko et al., eq. 3,
+/// G(d) = d^p q = 1: Hunt and Crossley 1975. k >= 0 [N/m^p], p >= 1, c >= 0 [N s^q/m^(p+q)], q >= 1.
 [[nodiscard]] ContactLaw power_law(double k, double p, double c, double q);
 
-/// The same with another depth in the damping: F = k d^p + c d^n |d'|^q sgn d'. n = 0 or n >= 1. Units as above.
+/// The same with another depth in the damping: F = k d^p + c d^n |d'|^q sgn d'. n = 0 or n >= 1. Units as
+/// above.
 [[nodiscard]] ContactLaw power_law(double k, double p, double c, double q, double n);
 
-/// F = k d^p + c G(d) d', G the cubic step from 0 at d = 0 to 1 at d = depth.  theory.md (L.2); Abiko et al., eq. 3
-/// The form of ADAMS' IMPACT. k >= 0 [N/m^p], p >= 1, c >= 0 [N s/m], depth > 0 [m].
+/// F = k d^p + c G(d) d', G the cubic step from 0 at d = 0 to 1 at d = depth.  theory.md (L.2); Abiko et al.,
+/// eq. 3 The form of ADAMS' IMPACT. k >= 0 [N/m^p], p >= 1, c >= 0 [N s/m], depth > 0 [m].
 [[nodiscard]] ContactLaw step_damped_law(double k, double p, double c, double depth);
 
-/// F = A d^2 + B d + C, zero where this is negative.                    theory.md (L.3); Abiko et al., Table 4
+/// F = A d^2 + B d + C, zero where this is negative.                    theory.md (L.3); Abiko et al., Table
+/// 4
 /// a: A [N/m^2], b: B [N/m], c: C [N].
 [[nodiscard]] ContactLaw quadratic_law(double a, double b, double c);
 
-/// Stretched wire, pushed at its middle from where it is taut:          theory.md (L.4); Honda et al. 2014, eq. 1
+/// Stretched wire, pushed at its middle from where it is taut:          theory.md (L.4); Honda et al. 2014,
+/// eq. 1
 ///   F = 2 K (1 - l/sqrt(l^2 + 2 h d + d^2)) (h + d),  h = sqrt(l^2 - L^2)
 /// which is (R.8) at mid-span with the axial stiffness K l and no free travel.
 /// K: stiffness of one half [N/m], > 0; l: half its length, L: half the distance of its ends [m], l >= L > 0.

@@ -14,8 +14,8 @@ namespace {
 
 using Basis = std::array<double, 4>;
 
-/// The numbers of a node: the value, and its derivatives by travel d, position s and slack e. A pair (x, x_d) follows
-/// a cubic along the travel.
+/// The numbers of a node: the value, and its derivatives by travel d, position s and slack e. A pair (x, x_d)
+/// follows a cubic along the travel.
 enum Slot : std::size_t {
   value = 0,
   by_d = 1,
@@ -53,7 +53,8 @@ std::array<double, 4> bernstein(const double* v, double h) {
 using Index = std::array<std::size_t, 3>;
 using Bases = std::array<Basis, 3>;
 
-/// Value and slope along the travel at the knots k and k + 1, at the position and slack of a cell. Each is a sum over the corners (b, c),
+/// Value and slope along the travel at the knots k and k + 1, at the position and slack of a cell. Each is a
+/// sum over the corners (b, c),
 ///   V_e (V_s f + M_s f_s) + M_e (V_s f_e + M_s f_se);   V and M weigh the value and the slope at a corner.
 std::array<double, 4> ends(const ForceTable::Axes& axes, const std::vector<double>& nodes, std::size_t k,
                            const Index& index, const Bases& basis) noexcept {
@@ -76,9 +77,10 @@ std::array<double, 4> ends(const ForceTable::Axes& axes, const std::vector<doubl
   return total;
 }
 
-/// The continuation beyond the positions or slacks, at the travel x, in the dimensionless groups. A cubic whose Bernstein coefficients do not
-/// fall does not fall. Those of the linear continuation are therefore raised to the largest one before them, from 0 at first touch; where
-/// the continuation rises by itself nothing changes.
+/// The continuation beyond the positions or slacks, at the travel x, in the dimensionless groups. A cubic
+/// whose Bernstein coefficients do not fall does not fall. Those of the linear continuation are therefore
+/// raised to the largest one before them, from 0 at first touch; where the continuation rises by itself
+/// nothing changes.
 LawValue rising(const ForceTable::Axes& axes, const std::vector<double>& nodes, double x, const Index& index,
                 const Bases& basis) noexcept {
   const std::vector<double>& knots = axes[0];
@@ -211,9 +213,10 @@ double ForceTable::force(double travel, double position, double slack) const noe
   return std::max(0.0, force_scale_ * sum(locate(reduced(travel, position, slack))));
 }
 
-// Outside the range the force continues linearly in each of the three: along the travel with the stiffness of its end, along the position up
-// to the mounts and constant beyond them. A continued force is never negative and never falls along the travel: where it would, it keeps its
-// largest value so far.                                                                                              theory.md (R.12)
+// Outside the range the force continues linearly in each of the three: along the travel with the stiffness of
+// its end, along the position up to the mounts and constant beyond them. A continued force is never negative
+// and never falls along the travel: where it would, it keeps its
+// largest value so far.                                                                      theory.md (R.12)
 LawValue ForceTable::at(double travel, double position, double slack, Outside outside) const {
   if (travel < 0.0) return {};
   std::array<double, 3> x = reduced(travel, position, slack);
@@ -274,8 +277,8 @@ bool ForceTable::rises_in_cell(std::size_t k, std::size_t i, std::size_t j) cons
   const auto width = [&](std::size_t axis, std::size_t low) {
     return axes_[axis].size() > 1 ? axes_[axis][low + 1] - axes_[axis][low] : 1.0;
   };
-  // t[c][b][a]: along each direction first (value, slope) below and (value, slope) above, then, one direction after the
-  // other, its four Bernstein coefficients; a along the travel, b the position, c the slack.
+  // t[c][b][a]: along each direction first (value, slope) below and (value, slope) above, then, one direction
+  // after the other, its four Bernstein coefficients; a along the travel, b the position, c the slack.
   std::array<std::array<std::array<double, 4>, 4>, 4> t{};
   for (std::size_t c = 0; c < 4; ++c) {
     for (std::size_t b = 0; b < 4; ++b) {

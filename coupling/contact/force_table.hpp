@@ -22,22 +22,23 @@ struct LawValue {
   bool extrapolated = false;
 };
 
-/// The exact table: a tricubic C1 spline of the force over travel, position and slack.           theory.md (R.2)-(R.4)
+/// The exact table: a tricubic C1 spline of the force over travel, position and slack.  theory.md (R.2)-(R.4)
 ///
-/// Held in dimensionless groups, F L^2/EI over (d/L, s/L, slack/L): it serves every wire of the same EA L^2/EI, R/L and
-/// friction. Nodes carry the value and its derivatives d, s, ds, e, de, se, dse, in this order; the slope along the
-/// travel is held so that the force along every line of nodes rises where its nodes do. Negative travel is no contact: 0.
+/// Held in dimensionless groups, F L^2/EI over (d/L, s/L, slack/L): it serves every wire of the same EA
+/// L^2/EI, R/L and friction. Nodes carry the value and its derivatives d, s, ds, e, de, se, dse, in this
+/// order; the slope along the travel is held so that the force along every line of nodes rises where its
+/// nodes do. Negative travel is no contact: 0.
 class ForceTable {
  public:
   static constexpr std::size_t numbers_a_node = 8;
   using Axes = std::array<std::vector<double>, 3>;  ///< travel, position, slack over the span; ascending
 
-  /// Values and slopes along the travel at the nodes, travel fastest, slack slowest. mirrored: position counts from the
-  /// nearer mount, and has no slope at mid-span.
+  /// Values and slopes along the travel at the nodes, travel fastest, slack slowest. mirrored: position
+  /// counts from the nearer mount, and has no slope at mid-span.
   ForceTable(Axes axes, const std::vector<double>& values, const std::vector<double>& slopes, double span,
              double bending_stiffness, bool mirrored);
-  /// The table that has these nodes (see `nodes`) and this `force_scale`, as a file holds it: the same to the last bit.
-  /// As many nodes as the axes have knots, every axis ascending, travel of two knots at least.
+  /// The table that has these nodes (see `nodes`) and this `force_scale`, as a file holds it: the same to the
+  /// last bit. As many nodes as the axes have knots, every axis ascending, travel of two knots at least.
   [[nodiscard]] static ForceTable from_nodes(Axes axes, std::vector<double> nodes, double span,
                                              double force_scale, bool mirrored) {
     ForceTable table(std::move(axes), span, force_scale, mirrored);
@@ -60,7 +61,8 @@ class ForceTable {
 
   /// Knots of travel, position and slack over the span [-], ascending.
   [[nodiscard]] const Axes& axes() const noexcept { return axes_; }
-  /// Numbers of the nodes in groups of numbers_a_node, travel fastest, slack slowest: F L^2/EI and its derivatives [-].
+  /// Numbers of the nodes in groups of numbers_a_node, travel fastest, slack slowest: F L^2/EI and its
+  /// derivatives [-].
   [[nodiscard]] const std::vector<double>& nodes() const noexcept { return nodes_; }
   /// Distance of the mounts L [m], > 0.
   [[nodiscard]] double span() const noexcept { return span_; }

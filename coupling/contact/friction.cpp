@@ -80,7 +80,8 @@ TangentForceIn<N> tangent_force(const MotionFriction& friction, const BristleSta
 }
 
 // With m = f z_m/(mu_s p_e), |m| <= |e| along e, p_e dz/dt = p_e (m - z)/tau less G z/2. Then
-//   f.w - mu_s/z_m (z.(p_e dz/dt) + (dp_e/dt) z^2/2) = mu_s p_e/(z_m tau) (m.e - 2 m.z + z^2) + mu_s/(2 z_m) (G - dp_e/dt) z^2,
+//   f.w - mu_s/z_m (z.(p_e dz/dt) + (dp_e/dt) z^2/2) = mu_s p_e/(z_m tau) (m.e - 2 m.z + z^2)
+//     + mu_s/(2 z_m) (G - dp_e/dt) z^2,
 // of which the first part is at least that of (m - z)^2, and the second is not negative.
 template <int N>
 BristleFlowIn<N> bristle_flow(const MotionFriction& friction, const BristleStateIn<N>& at,

@@ -12,9 +12,9 @@ enum class ContactFriction {
 
 /// Coulomb friction between a wire and what it touches.
 ///
-/// The bristle gives by `bristle_displacement` before it slides, whatever the load: its stiffness grows with the normal
-/// force. The default is the order of two steel cylinders of 1.5 mm and 6 mm (Mindlin 1949: k = 8 a G*, 0.4 um at
-/// 10 N): small beside every travel of interest, large beside the tolerances.
+/// The bristle gives by `bristle_displacement` before it slides, whatever the load: its stiffness grows with
+/// the normal force. The default is the order of two steel cylinders of 1.5 mm and 6 mm (Mindlin 1949: k = 8
+/// a G*, 0.4 um at 10 N): small beside every travel of interest, large beside the tolerances.
 struct MotionFriction {
   double static_coefficient = 0.0;  ///< >= 0: up to static_speed [-]
   double dynamic_coefficient =
@@ -32,9 +32,10 @@ struct MotionFriction {
   [[nodiscard]] bool has_bristle() const { return acts() && law == ContactFriction::stick_slip; }
 };
 
-/// Where a bristle stands: its deflection z [m] and the velocity against the other side w [m/s], in N axes of which they span the tangent
-/// plane (2) or in space, tangent (3); and how hard the contact presses: the normal force p, which bounds friction, and the part p_e of
-/// it that the contact stores as a spring, with which the bristle stiffens (both [N], or loads [N/m]).
+/// Where a bristle stands: its deflection z [m] and the velocity against the other side w [m/s], in N axes of
+/// which they span the tangent plane (2) or in space, tangent (3); and how hard the contact presses: the
+/// normal force p, which bounds friction, and the part p_e of it that the contact stores as a spring, with
+/// which the bristle stiffens (both [N], or loads [N/m]).
 template <int N>
 struct BristleStateIn {
   Eigen::Vector<double, N> bristle = Eigen::Vector<double, N>::Zero();
@@ -43,8 +44,8 @@ struct BristleStateIn {
   double elastic = 0.0;  ///< of the smooth law: not used
 };
 
-/// Friction in the tangent plane and its derivatives. `force` is what the wire exerts on the other side, in the unit of the
-/// normal force (or load).
+/// Friction in the tangent plane and its derivatives. `force` is what the wire exerts on the other side, in
+/// the unit of the normal force (or load).
 template <int N>
 struct TangentForceIn {
   Eigen::Vector<double, N> force = Eigen::Vector<double, N>::Zero();
@@ -71,11 +72,13 @@ struct TangentForceIn {
 template <int N>
 [[nodiscard]] TangentForceIn<N> tangent_force(const MotionFriction& friction, const BristleStateIn<N>& at);
 
-/// p_e dz/dt of a bristle under the friction f at this state, less the share of it that a growing load takes, and its derivatives:
+/// p_e dz/dt of a bristle under the friction f at this state, less the share of it that a growing load takes,
+/// and its derivatives:
 ///
 ///   p_e dz/dt = (z_m/mu_s f - p_e z)/tau - G z/2,   G = max(dp_e/dt, -p_e/tau)
-/// Where the bristle sticks this is p_e w: it does not creep. The term with G keeps the energy mu_s p_e z^2/(2 z_m) of a bristle whose spring
-/// stiffens, so that a rising load stores nothing that nobody has put in. Units: those of p_e times m/s.
+/// Where the bristle sticks this is p_e w: it does not creep. The term with G keeps the energy mu_s p_e
+/// z^2/(2 z_m) of a bristle whose spring stiffens, so that a rising load stores nothing that nobody has put
+/// in. Units: those of p_e times m/s.
 template <int N>
 struct BristleFlowIn {
   Eigen::Vector<double, N> flow = Eigen::Vector<double, N>::Zero();
@@ -114,8 +117,8 @@ using TangentForce = TangentForceIn<2>;
 using BristleFlow = BristleFlowIn<2>;
 using BristleChange = BristleChangeIn<2>;
 
-/// Coefficient of friction at a sliding speed [m/s] >= 0 and its derivative [s/m]: static up to static_speed, dynamic from dynamic_speed on,
-/// a cubic step between.
+/// Coefficient of friction at a sliding speed [m/s] >= 0 and its derivative [s/m]: static up to static_speed,
+/// dynamic from dynamic_speed on, a cubic step between.
 struct SlipCoefficient {
   double value = 0.0;
   double slope = 0.0;

@@ -22,9 +22,9 @@ struct LawParameter {
   std::string unit;  ///< SI; empty for a pure number
 };
 
-/// A contact force F of the travel alone, its numbers given: what a form becomes with numbers, and what a law of a
-/// motion (contact_law.hpp) adds its damping to. Travel d >= 0 from first touch [m]; without contact (d < 0) the force
-/// is none and these functions are not asked.
+/// A contact force F of the travel alone, its numbers given: what a form becomes with numbers, and what a law
+/// of a motion (contact_law.hpp) adds its damping to. Travel d >= 0 from first touch [m]; without contact (d
+/// < 0) the force is none and these functions are not asked.
 class SpringLaw {
  public:
   virtual ~SpringLaw() = default;
@@ -52,21 +52,24 @@ class LawForm {
   [[nodiscard]] virtual std::string name() const = 0;     ///< as in law.json
   [[nodiscard]] virtual std::string formula() const = 0;  ///< for people
   [[nodiscard]] virtual std::vector<LawParameter> parameters() const = 0;
-  /// Body of a function `double force(double d)` with the numbers written in, in the language that C, C++ and Python
-  /// share but for a prefix of the mathematical functions ("" in C, "std::" in C++, "math." in Python); all in SI units.
+  /// Body of a function `double force(double d)` with the numbers written in, in the language that C, C++ and
+  /// Python share but for a prefix of the mathematical functions ("" in C, "std::" in C++, "math." in
+  /// Python); all in SI units.
   [[nodiscard]] virtual std::string expression(const Eigen::VectorXd& p, const std::string& prefix) const = 0;
 
-  /// The law with these numbers, in the units of `parameters`; all that depends on them alone is done here, for many evaluations.
+  /// The law with these numbers, in the units of `parameters`; all that depends on them alone is done here,
+  /// for many evaluations.
   [[nodiscard]] virtual SpringLawPointer with(const Eigen::VectorXd& p) const = 0;
-  /// The law's force [N], stiffness [N/m] and energy [J] at a travel d >= 0 [m], with the numbers p. For one evaluation; for many: `with`.
+  /// The law's force [N], stiffness [N/m] and energy [J] at a travel d >= 0 [m], with the numbers p. For one
+  /// evaluation; for many: `with`.
   [[nodiscard]] virtual double force(const Eigen::VectorXd& p, double d) const { return with(p)->force(d); }
   [[nodiscard]] double stiffness(const Eigen::VectorXd& p, double d) const { return with(p)->stiffness(d); }
   [[nodiscard]] double energy(const Eigen::VectorXd& p, double d) const { return with(p)->energy(d); }
   /// dF/dp at d >= 0 [m], (numbers): N over the unit of each number.
   [[nodiscard]] virtual Eigen::VectorXd by_parameters(const Eigen::VectorXd& p, double d) const = 0;
 
-  /// Where a least-squares search may begin, several guesses; the best of them is used. force_scale [N] and travel_scale [m]:
-  /// largest force and travel of the points.
+  /// Where a least-squares search may begin, several guesses; the best of them is used. force_scale [N] and
+  /// travel_scale [m]: largest force and travel of the points.
   [[nodiscard]] virtual std::vector<Eigen::VectorXd> guesses(double force_scale,
                                                              double travel_scale) const = 0;
   /// Whether numbers, in their units, make sense (a positive power); a search does not leave them.
@@ -86,7 +89,8 @@ using LawFormPointer = std::shared_ptr<const LawForm>;
 /// F = k d^p, p >= 1.                                         Abiko et al., eq. 3 (Gilardi and Sharf 2002)
 [[nodiscard]] LawFormPointer power_law();
 /// Two straight pieces of an elastic wire, taut after a free travel d0; at mid-span Honda et al., eq. 1.
-///   F = K (l1 + l2 - L)/L (y/l1 + y/l2),  y = q + d - d0,  q the height at which the wire is just taut  (R.8)
+///   F = K (l1 + l2 - L)/L (y/l1 + y/l2),  y = q + d - d0,  q the height at which the wire is just taut
+///                                                                                                      (R.8)
 [[nodiscard]] LawFormPointer stretched_wire_law(const LawPlace& place);
 /// Its tangent where the wire becomes taut; at mid-span Honda et al., eq. 2.
 [[nodiscard]] LawFormPointer stretched_wire_linearised(const LawPlace& place);

@@ -31,8 +31,8 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
-// Which triangle is nearest is asked in plain double precision: three times as fast, and a triangle that is no farther than another to
-// round-off is as good.
+// Which triangle is nearest is asked in plain double precision: three times as fast, and a triangle that is
+// no farther than another to round-off is as good.
 using FastKernel = CGAL::Simple_cartesian<double>;
 using FastMesh = CGAL::Surface_mesh<FastKernel::Point_3>;
 using Primitive = CGAL::AABB_face_graph_triangle_primitive<FastMesh>;
@@ -213,8 +213,9 @@ MeshShape::MeshShape(const TriangleMesh& mesh) {
 
 MeshShape::~MeshShape() = default;
 
-// The nearest face is known; where on it the foot stands follows from the signs of its projections (Ericson 2004, sec. 5.1.5).
-// What lies straight above a face is the face's, though its foot be on an edge: between the triangles of one flat face, or to round-off.
+// The nearest face is known; where on it the foot stands follows from the signs of its projections (Ericson
+// 2004, sec. 5.1.5). What lies straight above a face is the face's, though its foot be on an edge: between
+// the triangles of one flat face, or to round-off.
 MeshShape::Near MeshShape::nearest(const Vector3d& p) const {
   const Mesh& m = surface_->mesh;
   const Mesh::Face_index face(

@@ -8,7 +8,8 @@ namespace snare::coupling {
 
 /// Signed angle from a to b [rad].
 [[nodiscard]] double angle_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
-/// A vector of any unit turned left by a right angle: of a radial, the direction of increasing angle about the pin's centre.
+/// A vector of any unit turned left by a right angle: of a radial, the direction of increasing angle about
+/// the pin's centre.
 [[nodiscard]] Eigen::Vector2d left_of(const Eigen::Vector2d& v);
 
 /// The wire's tangent at a vertex of the curve of contact, in the plane: t = u/|u|.         theory.md (C.1)
@@ -18,7 +19,8 @@ struct VertexTangent {
   Eigen::Vector2d normal;  ///< t turned left by a right angle
   double size = 1.0;       ///< |u|, about the stretch
 
-  /// Change of the direction angle of t for a change of u, (2) [rad]: the angle is n.du/|u|, u being without unit.
+  /// Change of the direction angle of t for a change of u, (2) [rad]: the angle is n.du/|u|, u being without
+  /// unit.
   [[nodiscard]] Eigen::RowVector2d angle_by_u() const { return normal.transpose() / size; }
 };
 [[nodiscard]] VertexTangent vertex_tangent(const VertexSlope<2>& slope);
@@ -37,8 +39,9 @@ struct SlipWork {
   double slip = 0.0;   ///< of the step before [m], its sign the direction
   double begin = 0.0;  ///< friction at the beginning of that step [N], >= 0
 
-  /// Of the next step [J], >= 0: by the parabola through the friction at its ends and at `begin`; by a straight line where the slip has
-  /// turned round or the step before was short. next: slip [m]; from, to: friction at its ends [N], >= 0.
+  /// Of the next step [J], >= 0: by the parabola through the friction at its ends and at `begin`; by a
+  /// straight line where the slip has turned round or the step before was short. next: slip [m]; from, to:
+  /// friction at its ends [N], >= 0.
   [[nodiscard]] double over(double next, double from, double to) const;
 };
 

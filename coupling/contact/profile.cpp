@@ -178,7 +178,8 @@ Profile::Near Profile::nearest(const Vector2d& p, Chain chain) const {
     } else {
       const double convex = std::copysign(1.0, e.curvature);
       const Vector2d radial = p - e.centre;
-      // A convex arc turns to the left about its centre, a concave one to the right; both sweep half a turn at most.
+      // A convex arc turns to the left about its centre, a concave one to the right; both sweep half a turn
+      // at most.
       if (convex * cross(e.from - e.centre, radial) > 0.0 && convex * cross(radial, e.to - e.centre) > 0.0) {
         const double signed_distance = convex * (radial.norm() - 1.0 / std::abs(e.curvature));
         if (std::abs(signed_distance) < least) {

@@ -15,8 +15,9 @@ struct ProfileEdge {
 
 /// The section of a solid of revolution in the half plane (rho, z), bounded by straight edges and arcs.
 ///
-/// It runs upward with the outside on its right: from the lower end on the axis to the upper one, or, where the solid has a hole
-/// along its axis, round a loop back to its start.                                              theory.md (G.3)
+/// It runs upward with the outside on its right: from the lower end on the axis to the upper one, or, where
+/// the solid has a hole
+/// along its axis, round a loop back to its start.                                            theory.md (G.3)
 class Profile {
  public:
   /// Edges one after the other, counted on from the first through the start of a loop.
@@ -31,15 +32,17 @@ class Profile {
     double bending = 0.0;                               ///< its second derivative across the gradient [1/m]
   };
 
-  /// start: on the axis or, of a loop, off it [m]. Throws InputError: fewer than two edges, a point left of the axis or where the
-  /// one before is, an end that is neither on the axis nor the start, an arc of too small a radius, a profile that crosses
-  /// itself or has the outside on its left.
+  /// start: on the axis or, of a loop, off it [m]. Throws InputError: fewer than two edges, a point left of
+  /// the axis or where the one before is, an end that is neither on the axis nor the start, an arc of too
+  /// small a radius, a profile that crosses itself or has the outside on its left.
   Profile(const Eigen::Vector2d& start, const std::vector<ProfileEdge>& edges);
 
   /// All its edges: once round a loop, else from end to end on the axis.
   [[nodiscard]] Chain whole() const { return {0, static_cast<int>(edges_.size())}; }
-  /// What is left between its concave corners when arcs that are hollow with a radius of `wire_radius` [m] or less, in which no such
-  /// wire fits, are left out. Between them these chains are nearest to whatever is farther out than that.    theory.md (G.11)
+  /// What is left between its concave corners when arcs that are hollow with a radius of `wire_radius` [m] or
+  /// less, in which no such
+  /// wire fits, are left out. Between them these chains are nearest to whatever is farther out than that.
+  ///                                                                                         theory.md (G.11)
   [[nodiscard]] std::vector<Chain> chains(double wire_radius) const;
   /// p: (rho, z) [m].
   [[nodiscard]] Near nearest(const Eigen::Vector2d& p, Chain chain) const;
@@ -69,9 +72,9 @@ class Profile {
   std::vector<Corner> corners_;  // before every edge, and behind the last
 };
 
-/// Edges through the corners of a polygon, each rounded by an arc of its radius that touches both sides [m, >= 0; 0: sharp]. Where the
-/// first corner is off the axis the last is joined to it. Throws InputError as the profile does, and where a side is too short for the
-/// arcs at its ends or an end on the axis is rounded.
+/// Edges through the corners of a polygon, each rounded by an arc of its radius that touches both sides [m,
+/// >= 0; 0: sharp]. Where the first corner is off the axis the last is joined to it. Throws InputError as the
+/// profile does, and where a side is too short for the arcs at its ends or an end on the axis is rounded.
 [[nodiscard]] Profile rounded_profile(const std::vector<Eigen::Vector2d>& corners,
                                       const std::vector<double>& radii);
 

@@ -9,7 +9,8 @@ namespace snare::coupling {
 
 namespace {
 
-/// Weights of value and slope at the lower knot, then at the upper one, of a cubic over h at t in [0, 1]; and their derivatives.
+/// Weights of value and slope at the lower knot, then at the upper one, of a cubic over h at t in [0, 1]; and
+/// their derivatives.
 struct Cubic {
   std::array<double, 4> weight, by, by_twice;
 

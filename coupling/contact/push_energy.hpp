@@ -7,10 +7,11 @@
 
 namespace snare::coupling {
 
-/// The energy of a table's wire at one slack, of which the table's force is the slope along the travel.   theory.md (R.2), (M.27)
+/// The energy of a table's wire at one slack, of which the table's force is the slope along the travel.
+///                                                                                    theory.md (R.2), (M.27)
 ///   U(d, s) = integral of F(x, s) dx from 0 to d
-/// exact for the table, whose force at one slack is a bicubic of travel and position. Beyond the travel the force goes on straight, beyond
-/// the positions as at the outermost.
+/// exact for the table, whose force at one slack is a bicubic of travel and position. Beyond the travel the
+/// force goes on straight, beyond the positions as at the outermost.
 class PushEnergy {
  public:
   /// slack: within the table's range, to which it is held [m].

@@ -28,7 +28,9 @@ class PressingLaw final : public SpringLaw {
   std::vector<PullingRange> pulls_;
 };
 
-/// A spring law with the travels for which it was fitted, from 0 to `end`: never negative, and linear beyond them.  theory.md (R.7)
+/// A spring law with the travels for which it was fitted, from 0 to `end`: never negative, and linear beyond
+/// them.
+///                                                                                            theory.md (R.7)
 ///   F = max(0, S(d)) for d <= end,   F = max(0, S(end)) + max(0, S'(end)) (d - end) beyond
 class RangedLaw final : public SpringLaw {
  public:
@@ -42,9 +44,8 @@ class RangedLaw final : public SpringLaw {
 
   [[nodiscard]] double end() const noexcept { return end_; }              ///< last travel of the range [m]
   [[nodiscard]] double end_force() const noexcept { return end_force_; }  ///< [N]
-  [[nodiscard]] double end_stiffness() const noexcept {
-    return end_stiffness_;
-  }  ///< of the continuation [N/m]
+  /// Of the continuation [N/m].
+  [[nodiscard]] double end_stiffness() const noexcept { return end_stiffness_; }
 
  private:
   PressingLaw law_;  // within the range

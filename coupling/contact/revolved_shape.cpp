@@ -62,7 +62,8 @@ double RevolvedShape::distance(const Vector3d& p) const {
   return nearest({std::hypot(p.x(), p.y()), p.z()}).distance;
 }
 
-// phi(x, y, z) = d(rho, z): the Hessian is that of d in the plane through the axis, and d_rho/rho along the parallel circle.
+// phi(x, y, z) = d(rho, z): the Hessian is that of d in the plane through the axis, and d_rho/rho along the
+// parallel circle.
 DistanceField RevolvedShape::at(const Vector3d& p) const {
   const double rho = std::hypot(p.x(), p.y());
   const Profile::Near near = nearest({rho, p.z()});
@@ -72,7 +73,8 @@ DistanceField RevolvedShape::at(const Vector3d& p) const {
   DistanceField field;
   field.distance = near.distance;
   field.normal = near.normal.x() * out + near.normal.y() * Vector3d::UnitZ();
-  // On the axis d_rho vanishes where phi is smooth, and d_rho/rho becomes d_rho_rho; beside it the quotient is round-off.
+  // On the axis d_rho vanishes where phi is smooth, and d_rho/rho becomes d_rho_rho; beside it the quotient
+  // is round-off.
   constexpr double close = 1e-6;  // d_rho/rho - d_rho_rho is of second order in rho
   const bool on_axis =
       rho * std::abs(near.bending) < close && std::abs(near.normal.x()) < close && rho < close;

@@ -10,11 +10,12 @@
 
 namespace snare::coupling {
 
-/// A solid of revolution about the z axis, or one of its pieces.                                   theory.md (G.3), (G.11)
+/// A solid of revolution about the z axis, or one of its pieces.                      theory.md (G.3), (G.11)
 ///
-/// Of the solid the distance is exact on both sides of its surface. A piece is the surface between two concave corners of the
-/// profile: outside the solid the distance to that part of it; inside the sign is that of the part's own side, and the least over
-/// the pieces has the right one.
+/// Of the solid the distance is exact on both sides of its surface. A piece is the surface between two
+/// concave corners of the
+/// profile: outside the solid the distance to that part of it; inside the sign is that of the part's own
+/// side, and the least over the pieces has the right one.
 class RevolvedShape final : public ContactShape {
  public:
   explicit RevolvedShape(Profile profile);

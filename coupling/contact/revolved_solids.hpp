@@ -9,14 +9,14 @@ namespace snare::coupling {
 /// A finite cylinder with sharp rims about z, centred at the origin; radius, length > 0 [m].
 [[nodiscard]] std::shared_ptr<const ContactShape> finite_cylinder(double radius, double length);
 
-/// A truncated cone with sharp rims about z, centred at the origin: radii at z = -length/2 and length/2, >= 0 and not both 0 [m]; one
-/// of 0 is a full cone.
+/// A truncated cone with sharp rims about z, centred at the origin: radii at z = -length/2 and length/2, >= 0
+/// and not both 0 [m]; one of 0 is a full cone.
 [[nodiscard]] std::shared_ptr<const ContactShape> truncated_cone(double lower_radius, double upper_radius,
                                                                  double length);
 
-/// A ring about z, centred at the origin, open at both ends: what lies along a housing meets its inside, where the distance is
-/// inner_radius less that from the axis. 0 < inner_radius < outer_radius, length > 0, rounding of its four rims >= 0, at most half
-/// the length and half the wall [m]. Throws InputError.
+/// A ring about z, centred at the origin, open at both ends: what lies along a housing meets its inside,
+/// where the distance is inner_radius less that from the axis. 0 < inner_radius < outer_radius, length > 0,
+/// rounding of its four rims >= 0, at most half the length and half the wall [m]. Throws InputError.
 [[nodiscard]] std::shared_ptr<const ContactShape> hollow_cylinder(double inner_radius, double outer_radius,
                                                                   double length, double rounding);
 
@@ -32,12 +32,12 @@ struct Cup {
 /// Throws InputError.
 [[nodiscard]] std::shared_ptr<const ContactShape> cup(const Cup& cup);
 
-/// The shaft of a grapple fixture with its cam-shaped tip: what the closing wires meet. From z = 0, its foot on the target's
-/// plate, a cylinder; then a cone (the cam's underside, behind which the wires cannot slip off), an arc that bulges by
-/// `bulge`, and a flat end.
+/// The shaft of a grapple fixture with its cam-shaped tip: what the closing wires meet. From z = 0, its foot
+/// on the target's plate, a cylinder; then a cone (the cam's underside, behind which the wires cannot slip
+/// off), an arc that bulges by `bulge`, and a flat end.
 ///
-/// No dimension is published in the sources at hand; the defaults are assumptions: a shaft as thick as the pin of the published
-/// static tests is taken to be, a cam of twice its radius.
+/// No dimension is published in the sources at hand; the defaults are assumptions: a shaft as thick as the
+/// pin of the published static tests is taken to be, a cam of twice its radius.
 struct GrappleShaft {
   double shaft_radius = 6e-3;      ///< [m], > 0
   double shaft_length = 60e-3;     ///< up to where the cam begins [m], > 0

@@ -15,11 +15,13 @@ struct DistanceField {
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();  ///< of the distance [1/m]
 };
 
-/// A rigid surface that a wire can touch, as its signed distance: exact outside, so that |phi(p) - phi(q)| <= |p - q|.
+/// A rigid surface that a wire can touch, as its signed distance: exact outside, so that |phi(p) - phi(q)| <=
+/// |p - q|.
 ///
-/// Outside, phi is once differentiable everywhere but on the shape's outer medial surface, and twice but where the
-/// nearest feature changes (face to edge, edge to vertex): there the Hessian jumps between finite values, as the curvature of
-/// the surface at the distance of the wire's radius does.                                          theory.md (G.2)
+/// Outside, phi is once differentiable everywhere but on the shape's outer medial surface, and twice but
+/// where the nearest feature changes (face to edge, edge to vertex): there the Hessian jumps between finite
+/// values, as the curvature of
+/// the surface at the distance of the wire's radius does.                                     theory.md (G.2)
 class ContactShape {
  public:
   ContactShape() = default;
@@ -30,18 +32,19 @@ class ContactShape {
   [[nodiscard]] virtual DistanceField at(const Eigen::Vector3d& p) const = 0;
   /// The distance alone [m].
   [[nodiscard]] virtual double distance(const Eigen::Vector3d& p) const { return at(p).distance; }
-  /// Smallest radius of curvature where the surface is convex [m], infinite where it is nowhere: the Hessian's largest eigenvalue at a
-  /// distance d outside is at most 1/(d + this). 0 for a shape with edges, which needs a wire of some radius: on an edge a bare line
-  /// would have no direction of contact.
+  /// Smallest radius of curvature where the surface is convex [m], infinite where it is nowhere: the
+  /// Hessian's largest eigenvalue at a distance d outside is at most 1/(d + this). 0 for a shape with edges,
+  /// which needs a wire of some radius: on an edge a bare line would have no direction of contact.
   [[nodiscard]] virtual double smallest_radius() const { return 0.0; }
-  /// Where phi has a kink outside that a wire of this radius [m] can reach, as in a concave corner: shapes without, none of which has
-  /// pieces, that have the least distance in common wherever it is more than the radius. Empty for any other shape.
+  /// Where phi has a kink outside that a wire of this radius [m] can reach, as in a concave corner: shapes
+  /// without, none of which has pieces, that have the least distance in common wherever it is more than the
+  /// radius. Empty for any other shape.
   [[nodiscard]] virtual std::vector<std::shared_ptr<const ContactShape>> pieces(
       double /*wire_radius*/) const {
     return {};
   }
-  /// Whether it is its own mirror image in the plane n.p = offset [m] of its frame, n unit; false where that is not known. It needs to be so to
-  /// round-off alone.
+  /// Whether it is its own mirror image in the plane n.p = offset [m] of its frame, n unit; false where that
+  /// is not known. It needs to be so to round-off alone.
   [[nodiscard]] virtual bool is_mirrored(const Eigen::Vector3d& /*n*/, double /*offset*/) const {
     return false;
   }
@@ -49,15 +52,17 @@ class ContactShape {
   [[nodiscard]] virtual std::vector<Eigen::Matrix3Xd> drawing() const = 0;
 };
 
-/// The pieces of a shape for a wire of a radius [m], >= 0, or the shape itself. All are in the shape's frame; a wire touches each on
-/// its own: in the corner between two it has a gap and a normal to both.                      theory.md (G.10)
+/// The pieces of a shape for a wire of a radius [m], >= 0, or the shape itself. All are in the shape's frame;
+/// a wire touches each on
+/// its own: in the corner between two it has a gap and a normal to both.                     theory.md (G.10)
 [[nodiscard]] std::vector<std::shared_ptr<const ContactShape>> pieces_of(
     const std::shared_ptr<const ContactShape>& shape, double wire_radius = 0.0);
 
 /// A circle about the z axis in `chords` chords, closed [m].
 [[nodiscard]] Eigen::Matrix3Xd circle_drawing(double radius, double height, int chords);
 
-/// Whether a plane is across the z axis, or has it in itself, to round-off: what is_mirrored asks of bodies about that axis. Offsets in [m].
+/// Whether a plane is across the z axis, or has it in itself, to round-off: what is_mirrored asks of bodies
+/// about that axis. Offsets in [m].
 [[nodiscard]] bool is_across_axis(const Eigen::Vector3d& n);
 [[nodiscard]] bool has_axis(const Eigen::Vector3d& n, double offset);
 
@@ -101,8 +106,8 @@ class EndlessCylinder final : public ContactShape {
   double radius_;
 };
 
-/// All points within `radius` of the segment from (0, 0, -length/2) to (0, 0, length/2); radius 0 is a knife edge, a finite
-/// line.
+/// All points within `radius` of the segment from (0, 0, -length/2) to (0, 0, length/2); radius 0 is a knife
+/// edge, a finite line.
 class Capsule final : public ContactShape {
  public:
   /// radius >= 0 [m]; length > 0 of the segment, without the round ends [m].

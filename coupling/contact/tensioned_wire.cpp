@@ -10,8 +10,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// k l^3/EI at q = T l^2/EI: even in m, so that a tension may be negative or complex. All hyperbolic functions are
-/// divided by exp(c), which cancels in D/N and keeps them finite.
+/// k l^3/EI at q = T l^2/EI: even in m, so that a tension may be negative or complex. All hyperbolic
+/// functions are divided by exp(c), which cancels in D/N and keeps them finite.
 Complex reduced_stiffness(Complex q, double sigma) {
   const Complex c = std::sqrt(q);
   const Complex a = sigma * c;
@@ -33,8 +33,9 @@ TensionedStiffness tensioned_stiffness(double bending_stiffness, double tension,
   const double ei = bending_stiffness;
   const double q = tension * span * span / ei;
   const double sigma = position / span;
-  // D and N lose their digits as c^4 and c^7 for small c. k is analytic in q (its nearest pole lies beyond the buckling
-  // load), so that its value is its mean over a circle about q, and its derivative the first moment.
+  // D and N lose their digits as c^4 and c^7 for small c. k is analytic in q (its nearest pole lies beyond
+  // the buckling load), so that its value is its mean over a circle about q, and its derivative the first
+  // moment.
   constexpr int points = 32;
   const double radius = 4.0;
   double value = 0.0;

@@ -7,7 +7,7 @@
 
 namespace snare::coupling {
 
-/// Several solids as one: phi = min phi_i.                                                          theory.md (G.10)
+/// Several solids as one: phi = min phi_i.                                                   theory.md (G.10)
 /// Exact outside; the normal jumps where two of them are equally near.
 class UnionShape final : public ContactShape {
  public:

@@ -32,12 +32,16 @@ struct PusherForces {
 [[nodiscard]] PusherForces pusher_forces(const PushSystem& system, const wire::PlanarState& state,
                                          const numerics::PathPoint& at);
 
-/// Forces of the left and the right mount, or support, on the wire [N], at the point that the system was assembled at last.
+/// Forces of the left and the right mount, or support, on the wire [N], at the point that the system was
+/// assembled at last.
 [[nodiscard]] std::array<Eigen::Vector2d, 2> mount_forces(const PushSystem& system,
                                                           const numerics::PathPoint& at);
 
-/// Puts the mounts' reactions, the axial forces at the ends and the largest tension into a point of the curve.  theory.md (W.36)
-/// reactions: of the left and the right mount on the wire [N]; tangents: of the wire at its ends, unit vectors;
+/// Puts the mounts' reactions, the axial forces at the ends and the largest tension into a point of the
+/// curve.
+///                                                                                           theory.md (W.36)
+/// reactions: of the left and the right mount on the wire [N]; tangents: of the wire at its ends, unit
+/// vectors;
 /// tensions: of the edges [N].
 void put_end_forces(const std::array<Eigen::Vector3d, 2>& reactions,
                     const std::array<Eigen::Vector3d, 2>& tangents, const Eigen::VectorXd& tensions,

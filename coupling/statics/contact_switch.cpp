@@ -99,7 +99,8 @@ bool change_state(PushSystem& system, numerics::PathPoint& point, ContactMemory&
   if (pusher.status == ContactStatus::open) return close_pusher(system, point, tolerance, memory);
 
   const wire::PlanarState state = system.state(point);
-  // Supports first: as long as one holds a wire that slides over it, the pusher's force is not that of the equilibrium.
+  // Supports first: as long as one holds a wire that slides over it, the pusher's force is not that of the
+  // equilibrium.
   for (std::size_t k = system.sliding.size(); k-- > 0;) {
     SlidingContact& contact = system.sliding[k];
     const SlidingRows rows = system.sliding_rows(k);

@@ -8,7 +8,8 @@
 
 namespace snare::coupling {
 
-/// What the contact did within one step: whether its states changed, and how far into the step the first change came.
+/// What the contact did within one step: whether its states changed, and how far into the step the first
+/// change came.
 class ContactMemory {
  public:
   /// Forgets the step before; to be called at the start of every step.

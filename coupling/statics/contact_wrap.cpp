@@ -23,7 +23,8 @@ struct Arc {
   }
 };
 
-// Sticks while |f.tau| <= mu f.n, tau being n turned left; slides until it would slide back. True: it has changed.
+// Sticks while |f.tau| <= mu f.n, tau being n turned left; slides until it would slide back. True: it has
+// changed.
 bool settle_friction(WrappedContact& contact, const Vector2d& n, const Vector2d& force, double radius,
                      const ContactTolerance& tolerance) {
   if (contact.friction <= 0.0) return false;
@@ -138,7 +139,8 @@ bool begin_wrap(PushSystem& system, numerics::PathPoint& point, const ContactTol
     r.node = i;
     r.friction = pusher.friction;
     r.status = pusher.friction > 0.0 ? pusher.status : ContactStatus::slip;
-    // Of the pusher: sliding towards larger S means that the wire moves towards smaller angles of a pin on its right.
+    // Of the pusher: sliding towards larger S means that the wire moves towards smaller angles of a pin on
+    // its right.
     r.slip_sign = pusher.side * pusher.slip_sign;
     r.last_radial = (wire::vertex(state, i) - centre).normalized();
     arc.add(r, i == pusher.node ? force : Vector2d::Zero());

@@ -8,7 +8,9 @@
 
 namespace snare::coupling {
 
-/// Largest stress in a wire over the points of a push, by its largest tension and its largest bending moment [Pa].   theory.md (W.35)
+/// Largest stress in a wire over the points of a push, by its largest tension and its largest bending moment
+/// [Pa].
+///                                                                                           theory.md (W.35)
 [[nodiscard]] inline double largest_stress(const wire::WireSpecification& wire,
                                            const std::vector<PushPoint>& points) {
   double stress = 0.0;

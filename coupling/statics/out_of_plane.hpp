@@ -11,7 +11,8 @@ namespace snare::coupling {
 
 /// Negative eigenvalues of the rod's tangent stiffness out of the plane at a planar state: modes in which the
 /// wire leaves the plane while the pusher, free along its axis, holds its point of contact in the plane. The
-/// swing of an unloaded wire about its chord is neutral and not counted. torsional_stiffness: GJ [N m^2], > 0.
+/// swing of an unloaded wire about its chord is neutral and not counted. torsional_stiffness: GJ [N m^2], >
+/// 0.
 [[nodiscard]] int out_of_plane_modes(const wire::PlanarRod& rod, const wire::PlanarState& state,
                                      double torsional_stiffness);
 

@@ -7,7 +7,8 @@ namespace snare::coupling {
 
 namespace {
 
-// A remainder shorter than a tenth of the step is taken with it: points too near each other spoil a predictor.
+// A remainder shorter than a tenth of the step is taken with it: points too near each other spoil a
+// predictor.
 constexpr double with_remainder = 1.1;
 constexpr double to_event = 1.000001;  // not beyond it
 

@@ -32,14 +32,15 @@ class FollowedPath {
   [[nodiscard]] virtual double parameter() const = 0;
   /// Solves at a value of the parameter, in its unit, and accepts the solution, or puts everything back.
   [[nodiscard]] virtual StepOutcome step_to(double parameter) = 0;
-  /// The steps towards `target`, in the parameter's unit, have become too small, `last` is why the last one failed: reaches the target
-  /// in another way, or says why the path ends.
+  /// The steps towards `target`, in the parameter's unit, have become too small, `last` is why the last one
+  /// failed: reaches the target in another way, or says why the path ends.
   [[nodiscard]] virtual numerics::SolveReport without_steps(double target,
                                                             const numerics::SolveReport& last) = 0;
 };
 
-/// Of which length the next step is the double, or after a failure the half. The two differ by round-off, and at the
-/// target by the remainder that is taken with the last step; the points that a path passes depend on it.
+/// Of which length the next step is the double, or after a failure the half. The two differ by round-off, and
+/// at the target by the remainder that is taken with the last step; the points that a path passes depend on
+/// it.
 enum class StepMeasure {
   attempted,  ///< the distance between the two values of the parameter
   planned     ///< the step before a remainder was added
@@ -54,21 +55,23 @@ struct StepControl {
   double largest_step = std::numeric_limits<double>::infinity();  ///< of the parameter, in its unit
 };
 
-/// Follows a path to a target, first in one step; a step that fails is halved, one that succeeds is doubled, one with
-/// an event inside ends there; none is longer than the largest. target: in the parameter's unit. Returns the report of the
-/// last step, usable when the target is reached.
+/// Follows a path to a target, first in one step; a step that fails is halved, one that succeeds is doubled,
+/// one with an event inside ends there; none is longer than the largest. target: in the parameter's unit.
+/// Returns the report of the last step, usable when the target is reached.
 [[nodiscard]] numerics::SolveReport follow(FollowedPath& path, double target, const StepControl& control);
 
 /// A path whose states depend on the steps that led to them (friction, slip, sliders of a section).
 class RememberingPath : public FollowedPath {
  public:
-  /// Keeps the present state, memory included. Calling the result puts it back, as often as wanted while the path lives.
+  /// Keeps the present state, memory included. Calling the result puts it back, as often as wanted while the
+  /// path lives.
   [[nodiscard]] virtual std::function<void()> checkpoint() = 0;
-  /// Like step_to, in the parameter's unit, for a step that is taken back when its measures are known: nothing else of it is
-  /// needed.
+  /// Like step_to, in the parameter's unit, for a step that is taken back when its measures are known:
+  /// nothing else of it is needed.
   [[nodiscard]] virtual StepOutcome try_step_to(double parameter) { return step_to(parameter); }
 
-  /// Values at the last accepted point that measure the error of a step, and the error allowed for each, in its unit.
+  /// Values at the last accepted point that measure the error of a step, and the error allowed for each, in
+  /// its unit.
   struct Measures {
     Eigen::VectorXd values;
     Eigen::VectorXd allowed;
@@ -78,9 +81,10 @@ class RememberingPath : public FollowedPath {
 
 /// Steps that a path with a memory chooses by itself, whatever points are asked for.          theory.md (N.9)
 ///
-/// Every step is taken at once and in two halves. The difference estimates the error of the halves, whose path is kept:
-/// a method of first order errs by c h^2 in a whole step and by c h^2 / 2 in two halves. A step whose error is larger
-/// than allowed is repeated; the next is as long as the error admits, up to twice the last.
+/// Every step is taken at once and in two halves. The difference estimates the error of the halves, whose
+/// path is kept: a method of first order errs by c h^2 in a whole step and by c h^2 / 2 in two halves. A step
+/// whose error is larger than allowed is repeated; the next is as long as the error admits, up to twice the
+/// last.
 class OwnSteps {
  public:
   /// Lengths of the parameter, in its unit.
@@ -90,8 +94,8 @@ class OwnSteps {
     double smallest = 0.0;  ///< a step that fails is not halved below it
     double largest = 0.0;
   };
-  /// Called after each accepted step, with its two ends. back: puts the path to the beginning of the step. The callee
-  /// must leave the path in the state in which it found it.
+  /// Called after each accepted step, with its two ends. back: puts the path to the beginning of the step.
+  /// The callee must leave the path in the state in which it found it.
   using Accepted =
       std::function<numerics::SolveReport(double from, double to, const std::function<void()>& back)>;
 
@@ -99,8 +103,9 @@ class OwnSteps {
 
   /// Begins with a short step again: the path turns back.
   void turn() { step_ = lengths_.first; }
-  /// Goes on towards `target`, in the parameter's unit, by one step and its halves, and not beyond. The report is usable
-  /// when the path has come on; else the path stands where it stood, and either ends there or takes no step of any length.
+  /// Goes on towards `target`, in the parameter's unit, by one step and its halves, and not beyond. The
+  /// report is usable when the path has come on; else the path stands where it stood, and either ends there
+  /// or takes no step of any length.
   [[nodiscard]] numerics::SolveReport advance(RememberingPath& path, double target, const Accepted& accepted);
 
  private:

@@ -65,7 +65,8 @@ bool PlanarPush::leave_unstable_branch() {
     workspace_.solver.solve(workspace_.system, direction, border);
     direction /= direction.lpNorm<Eigen::Infinity>();
   }
-  // The same side on every mesh: the vertices move along the chord, from the left mount to the right one, on the whole.
+  // The same side on every mesh: the vertices move along the chord, from the left mount to the right one, on
+  // the whole.
   double along = 0.0;
   for (Eigen::Index i = 0; i < n; i += wire::PlanarRod::block) along += direction[i];
   if (along < 0.0) direction = -direction;

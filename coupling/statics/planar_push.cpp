@@ -80,7 +80,8 @@ numerics::SolveReport PlanarPush::start() {
   return settled;
 }
 
-// The loose wire was found between mounts that hold. One that does not hold it slips at first touch, the pusher standing
+// The loose wire was found between mounts that hold. One that does not hold it slips at first touch, the
+// pusher standing
 // still: its limit falls from the force there, in steps that are halved when they fail.
 numerics::SolveReport PlanarPush::settle_mounts() {
   constexpr double smallest_share = 1e-4;

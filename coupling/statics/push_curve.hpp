@@ -42,8 +42,9 @@ struct PushPoint {
       0.0;  ///< axial force in the wire at the left mount, tension positive [N]: theory.md (W.36)
   double tension_right = 0.0;    ///< at the right mount [N]
   double largest_tension = 0.0;  ///< along the wire, its ends included, tension positive [N]
-  /// Force of a mount, or of a support, on the wire [N]: along the chord from the left mount to the right one; across it, in
-  /// the sense of the bulge; along z, out of their plane. The two, the pusher's force and the weight add up to zero.
+  /// Force of a mount, or of a support, on the wire [N]: along the chord from the left mount to the right
+  /// one; across it, in the sense of the bulge; along z, out of their plane. The two, the pusher's force and
+  /// the weight add up to zero.
   double reaction_along_left = 0.0, reaction_across_left = 0.0, reaction_z_left = 0.0;
   double reaction_along_right = 0.0, reaction_across_right = 0.0, reaction_z_right = 0.0;
   /// Material coordinate of the (middle of the) contact from the left mount [m]
@@ -79,8 +80,8 @@ struct PushCurve {
   double natural_height = 0.0;  ///< of the wire at the contact before the push [m]
   double touch_height = 0.0;    ///< of the pusher's centre at first touch [m]
   int newton_iterations = 0;    ///< all, with those of the initial shape
-  /// Travels at which the steps of the path's own ended [m], one list from each turning point to the next. Empty where the
-  /// points are the steps
+  /// Travels at which the steps of the path's own ended [m], one list from each turning point to the next.
+  /// Empty where the points are the steps
   std::vector<std::vector<double>> steps;
   numerics::SolveReport report;  ///< why it ended; `points` hold what was reached
 };

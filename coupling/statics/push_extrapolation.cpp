@@ -15,9 +15,9 @@ namespace {
 
 constexpr int coarsest = 4;  // of the edges of the mesh, one
 
-/// The values that are extrapolated, in addition to the derivatives of the force. All forces on the wire are among them, and are
-/// extrapolated together or not at all: their balance holds after extrapolation as it does on every mesh. The energy goes with them, the
-/// place of the contact by itself.
+/// The values that are extrapolated, in addition to the derivatives of the force. All forces on the wire are
+/// among them, and are extrapolated together or not at all: their balance holds after extrapolation as it
+/// does on every mesh. The energy goes with them, the place of the contact by itself.
 constexpr std::array extrapolated_values{&PushPoint::force,
                                          &PushPoint::transverse_force,
                                          &PushPoint::axial_force,
@@ -99,8 +99,9 @@ struct Refinement {
 
 using Refinements = std::array<Refinement, extrapolated_values.size()>;
 
-/// Whether the forces of a point are of one branch: each converges in order, or changes by less than a tenth of itself, as where its error
-/// passes through zero. Those that hardly change beside the others are not asked.
+/// Whether the forces of a point are of one branch: each converges in order, or changes by less than a tenth
+/// of itself, as where its error passes through zero. Those that hardly change beside the others are not
+/// asked.
 bool are_of_one_branch(const Refinements& values) {
   constexpr double hardly = 0.05, much = 0.1;
   const auto forces = std::span(values).first<extrapolated_forces>();
@@ -111,7 +112,8 @@ bool are_of_one_branch(const Refinements& values) {
   });
 }
 
-/// Extrapolates the values of a point that converge in order, and returns what is left of the error of the force [N].
+/// Extrapolates the values of a point that converge in order, and returns what is left of the error of the
+/// force [N].
 double extrapolate(PushPoint& p, const CoarsePoint& half, const CoarsePoint& quarter) {
   Refinements values;
   for (std::size_t v = 0; v < values.size(); ++v)
@@ -153,7 +155,8 @@ CoarseCurve with_longer_steps(const PushProblem& test, PushOptions options) {
   return CoarseCurve(solve_push(test, options, coarsest));
 }
 
-// Index of the next point at a travel, searched from an index on; the number of points where the search fails.
+// Index of the next point at a travel, searched from an index on; the number of points where the search
+// fails.
 std::size_t find(const std::vector<CoarsePoint>& points, std::size_t from, double travel) {
   while (from < points.size() && points[from].travel != travel) ++from;
   return from;
@@ -167,8 +170,8 @@ const CoarsePoint* next(const std::vector<CoarsePoint>& points, std::size_t& fro
   return &points[found];
 }
 
-// The path is of first order in its steps: the change of its force in steps twice as long estimates its error. Errors are
-// remembered by the path, so the largest one up to a point counts.
+// The path is of first order in its steps: the change of its force in steps twice as long estimates its
+// error. Errors are remembered by the path, so the largest one up to a point counts.
 void add_path_error(const CoarseCurve& steps, const CoarseCurve& longer, ExtrapolatedCurve& result) {
   double largest = 0.0;
   std::size_t in_steps = 0;

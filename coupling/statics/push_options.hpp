@@ -15,8 +15,8 @@ struct PushVariation {
   double step = 0.0;
   /// d travel / d amount at every point: -1 for a zero of the travel that is displaced
   double travel = 0.0;
-  /// d compliance / d amount of the left and the right mount along the chord [m/N], where they are rigid: each then moves
-  /// by its reaction.
+  /// d compliance / d amount of the left and the right mount along the chord [m/N], where they are rigid:
+  /// each then moves by its reaction.
   std::array<double, 2> mount_compliance{};
 };
 
@@ -30,8 +30,8 @@ struct PushOptions {
   double largest_step = 0.05;   ///< of the travel, as a share of the span [-], > 0
   /// Error of one step of a path with steps of its own, as a share of the forces on the wire [-], > 0
   double path_tolerance = 1e-3;
-  /// PushCurve::steps of another mesh or of a test that differs little, to be taken instead of steps of its own: forces are
-  /// then smooth functions of the numbers of the test
+  /// PushCurve::steps of another mesh or of a test that differs little, to be taken instead of steps of its
+  /// own: forces are then smooth functions of the numbers of the test
   std::vector<std::vector<double>> steps;
   /// Count the modes that leave the plane (a spatial factorisation a point)
   bool examine_out_of_plane = false;

@@ -17,10 +17,11 @@ namespace snare::coupling {
 
 /// A push, its travel the parameter of a path of equilibria: what a push in the plane and one in space share.
 ///
-/// Where an equilibrium depends on the steps that led to it (friction, slip, sliders of a section, the choice of a branch), the
-/// path takes steps of its own (OwnSteps), or those that are given, from one turning point of the asked travels to the next. A
-/// point that is asked for inside a step is solved from the step's beginning and forgotten: the path and its other points do not
-/// depend on it. All other paths take the asked points as their steps.
+/// Where an equilibrium depends on the steps that led to it (friction, slip, sliders of a section, the choice
+/// of a branch), the path takes steps of its own (OwnSteps), or those that are given, from one turning point
+/// of the asked travels to the next. A point that is asked for inside a step is solved from the step's
+/// beginning and forgotten: the path and its other points do not depend on it. All other paths take the asked
+/// points as their steps.
 class PushPath : public RememberingPath {
  public:
   /// From first touch through the asked travels [m], in their order.
@@ -44,7 +45,8 @@ class PushPath : public RememberingPath {
                                             const std::string& message) const;
   [[nodiscard]] numerics::SolveReport follow_to(double target) { return follow(*this, target, control_); }
   void note(PushEvent::Kind kind) { curve_.events.push_back({kind, point_.parameter}); }
-  /// Adds a point with the iterations since the one before. One with a number that is none is not added and ends the run.
+  /// Adds a point with the iterations since the one before. One with a number that is none is not added and
+  /// ends the run.
   void add(PushPoint point);
 
   const PushOptions& options_;
@@ -58,7 +60,8 @@ class PushPath : public RememberingPath {
  private:
   [[nodiscard]] numerics::SolveReport through_points(const std::vector<double>& travel);
   [[nodiscard]] numerics::SolveReport by_own_steps(const std::vector<double>& travel);
-  /// Follows the path to an asked travel and records it there, as does the next where the path stands there already.
+  /// Follows the path to an asked travel and records it there, as does the next where the path stands there
+  /// already.
   [[nodiscard]] numerics::SolveReport ask(double travel);
   [[nodiscard]] numerics::SolveReport record_here(double travel);
 

@@ -26,8 +26,9 @@ struct PusherSpecification {
 /// Shape of the loose wire before the push.
 struct BulgeSpecification {
   int mode = 1;  ///< buckling mode between the mounts, 1 to 4
-  /// Plane of the bulge before the push, turned about the chord from the plane of the push [rad], |plane| <= pi/2. An
-  /// unloaded wire swings about its chord without force, so the push starts where it has swung into its plane.
+  /// Plane of the bulge before the push, turned about the chord from the plane of the push [rad], |plane| <=
+  /// pi/2. An unloaded wire swings about its chord without force, so the push starts where it has swung into
+  /// its plane.
   double plane = 0.0;
 };
 

@@ -104,7 +104,8 @@ wire::Controls PushSensitivity::controls_by(const PushSystem& system, const Vari
   return by;
 }
 
-// Slips of the system's sections, and the material that they belong to, with the constants of the changed test.
+// Slips of the system's sections, and the material that they belong to, with the constants of the changed
+// test.
 void PushSensitivity::put_sections(const wire::SectionMemory& sections, const PushSystem& system,
                                    const Varied& varied, Side& side) const {
   const Memory& memory = varied.memory;
@@ -193,8 +194,8 @@ numerics::PathPoint PushSensitivity::solve(const PushSystem& system, const numer
     if (held[0]) change.band[0] -= varied.mount_compliance[0] * reactions[0].x();
     if (held[1]) change.band[at.band.size() - 2] -= varied.mount_compliance[1] * reactions[1].x();
   }
-  // The differences begin with the change at the point before. A slider that has slipped by less than its memory differs would
-  // turn back on one side if the unknowns did not go along.
+  // The differences begin with the change at the point before. A slider that has slipped by less than its
+  // memory differs would turn back on one side if the unknowns did not go along.
   const numerics::PathPoint& last = varied.memory.change;
   if (system.rod().has_memory() && last.band.size() == at.band.size() &&
       last.border.size() == at.border.size()) {

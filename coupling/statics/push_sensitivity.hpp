@@ -13,7 +13,7 @@
 namespace snare::coupling {
 
 /// Derivatives of a path of equilibria by numbers p of its test, by implicit differentiation.
-/// theory.md (C.13)
+///                                                                                           theory.md (C.13)
 ///
 ///   F(z, h, t; p) = 0:  J dz/dp = -(dF/dp + dF/dh dh/dp + dF/dt dt/dp)
 ///
@@ -30,8 +30,8 @@ class PushSensitivity {
   /// At the first touch, the system in the state in which that was found (see prepare_push).
   void begin(PushSystem& system, const numerics::PathPoint& at, numerics::PathWorkspace& workspace);
 
-  /// The system has carried the slips of its sections, `before`, over to other vertices in a step to `travel` [m]: so are
-  /// their derivatives.
+  /// The system has carried the slips of its sections, `before`, over to other vertices in a step to `travel`
+  /// [m]: so are their derivatives.
   void carry_sections(const wire::SectionMemory& before, const PushSystem& system, double travel);
 
   /// At a converged point, before the system forgets the point that friction remembered. Leaves the point's
@@ -58,7 +58,8 @@ class PushSensitivity {
   [[nodiscard]] Memories memories() const;
   void restore(const Memories& memories);
 
-  /// The same at first touch, where the wire settles: the travel counts from there and does not change with its zero.
+  /// The same at first touch, where the wire settles: the travel counts from there and does not change with
+  /// its zero.
   void advance_at_touch(PushSystem& system, const numerics::PathPoint& at,
                         numerics::PathWorkspace& workspace);
 

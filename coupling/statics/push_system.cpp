@@ -165,7 +165,8 @@ void PushSystem::take_reactions(const wire::PlanarState& s, const numerics::Path
   for (const wire::PlanarEnd* end : {&rod_->properties().left, &rod_->properties().right}) {
     // A mount that gives carries its force in the spring, which is part of the gradient.
     if (end->kind == wire::PlanarEnd::Kind::free || std::isinf(end->translational_stiffness)) continue;
-    // By the wire's side of the balance: the spring of a stiff mount gives less than the last places of x can show.
+    // By the wire's side of the balance: the spring of a stiff mount gives less than the last places of x can
+    // show.
     const bool left = end == &rod_->properties().left;
     const double x = s.q[left ? 0 : last];
     reactions_[left ? 0 : 1].x() -= end->translational_stiffness * (x - end->position.x());
@@ -300,7 +301,7 @@ void PushSystem::assemble_sliding(std::size_t index, const wire::PlanarState& s,
 }
 
 // With n = (x - p)/|x - p| and tau = n turned left: |x - p| - R = 0, and along tau it sticks, R d angle = 0,
-// or slides, f.tau + sign mu f.n = 0.  theory.md (C.7)
+// or slides, f.tau + sign mu f.n = 0.                                                         theory.md (C.7)
 void PushSystem::assemble_wrapped(std::size_t index, const wire::PlanarState& s,
                                   const numerics::PathPoint& at, numerics::BorderedSystem& system,
                                   Eigen::VectorXd& by_parameter) const {
@@ -342,9 +343,10 @@ void PushSystem::assemble_wrapped(std::size_t index, const wire::PlanarState& s,
   }
 }
 
-// With the sense s from the mount inwards. Feeding: the unknown is S, the drive s dE/dS. Sliding: the unknown is the force f
-// of the friction on the wire along the chord, the drive -s f, and the mount stands at x + c f, c its spring's compliance.
-//   holds: S or x + c f as at the last state;   slips: drive = sign * limit                    theory.md (C.8)
+// With the sense s from the mount inwards. Feeding: the unknown is S, the drive s dE/dS. Sliding: the unknown
+// is the force f of the friction on the wire along the chord, the drive -s f, and the mount stands at x + c
+// f, c its spring's compliance.
+//   holds: S or x + c f as at the last state;   slips: drive = sign * limit                   theory.md (C.8)
 void PushSystem::assemble_mount(std::size_t index, const numerics::PathPoint& at,
                                 numerics::BorderedSystem& system) const {
   const SlippingMount& mount = mounts[index];

@@ -12,16 +12,16 @@
 
 namespace snare::coupling {
 
-/// A mount that lets the wire through, or slides with it, when the force on it passes Coulomb's limit. theory.md (C.8)
-/// Its unknown in the border is the material coordinate that it holds, S [m], or the force of its friction on the
-/// wire along the chord [N].
+/// A mount that lets the wire through, or slides with it, when the force on it passes Coulomb's limit.
+/// theory.md (C.8) Its unknown in the border is the material coordinate that it holds, S [m], or the force of
+/// its friction on the wire along the chord [N].
 struct SlippingMount {
   bool right = false;  ///< else the left one
   wire::MountSlip kind = wire::MountSlip::feeds;
   double limit = 0.0;       ///< driving force at which it slips [N], > 0
   double compliance = 0.0;  ///< of a spring between a mount that slides and what it slides on [m/N], >= 0
-  /// Brings in as much wire as the mount before it, and has no equation of its own: where the wire slides freely over the
-  /// pusher the driving forces of both are equal whatever share each has.
+  /// Brings in as much wire as the mount before it, and has no equation of its own: where the wire slides
+  /// freely over the pusher the driving forces of both are equal whatever share each has.
   bool follows = false;
   bool slips = false;
   double slip_sign = 0.0;   ///< of the driving force while it slips, +1: the wire pulls, or -1 [-]
@@ -102,18 +102,20 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   /// Puts back what `contact_states` gave.
   void restore(const ContactStates& states) { static_cast<ContactStates&>(*this) = states; }
 
-  /// Carries the slips of the sections over to the vertices at which their material will be at `travel` [m], at the rate of
-  /// the last step; or at which other controls put it.
+  /// Carries the slips of the sections over to the vertices at which their material will be at `travel` [m],
+  /// at the rate of the last step; or at which other controls put it.
   void carry_sections(double travel);
   void carry_sections(const wire::Controls& to);
-  /// Keeps the controls of an accepted point [m], at its travel [m], and their rate unless the step to it was too short for one.
+  /// Keeps the controls of an accepted point [m], at its travel [m], and their rate unless the step to it was
+  /// too short for one.
   void follow_drift(const wire::Controls& controls, double travel);
   /// Whether a step of the travel [m] is long enough for a rate: in a shorter one that would be round-off.
   [[nodiscard]] bool has_rate(double step) const { return std::abs(step) > 1e-5 * length_; }
 
   /// Columns of the border: unknowns of all contacts, and one of every mount that can slip.
   [[nodiscard]] int border_unknowns() const;
-  /// Places in the border of the contact's unknowns and equations, counted as in `sliding`; of the pusher; of one in `wrapped`.
+  /// Places in the border of the contact's unknowns and equations, counted as in `sliding`; of the pusher; of
+  /// one in `wrapped`.
   [[nodiscard]] SlidingRows sliding_rows(std::size_t contact) const {
     return SlidingRows(SlidingRows::count * static_cast<int>(contact));
   }
@@ -123,7 +125,8 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   [[nodiscard]] int mount_row(std::size_t k) const {
     return wrapped_rows(wrapped.size()).force + static_cast<int>(k);
   }
-  /// Force that drives the mount, > 0 where the wire pulls [N], and S or where it stands [m]; of the last assembly.
+  /// Force that drives the mount, > 0 where the wire pulls [N], and S or where it stands [m]; of the last
+  /// assembly.
   [[nodiscard]] double mount_drive(std::size_t k, const numerics::PathPoint& at) const;
   [[nodiscard]] double mount_place(std::size_t k, const numerics::PathPoint& at) const;
   /// The rod with mounts that slide held where they are.
@@ -131,7 +134,8 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
 
   /// The rod that is pushed.
   [[nodiscard]] const wire::PlanarRod& rod() const { return *rod_; }
-  /// Place of the pusher's axis [m]: centre + (parameter - compliance F) motion, F its force along the motion [N].
+  /// Place of the pusher's axis [m]: centre + (parameter - compliance F) motion, F its force along the motion
+  /// [N].
   [[nodiscard]] Eigen::Vector2d pusher_centre(const numerics::PathPoint& at) const;
   /// Force of the pusher on the wire [N].
   [[nodiscard]] Eigen::Vector2d pusher_force(const numerics::PathPoint& at) const;
@@ -139,7 +143,9 @@ class PushSystem final : public numerics::PathProblem, public ContactStates {
   [[nodiscard]] wire::PlanarState state(const numerics::PathPoint& at) const;
   [[nodiscard]] VertexTangent tangent_at(const SlidingContact& contact, const wire::PlanarState& state) const;
 
-  /// PathProblem: equilibrium of the rod under f of every contact, and the equations in SlidingRows and WrappedRows.   theory.md (C.2)-(C.8)
+  /// PathProblem: equilibrium of the rod under f of every contact, and the equations in SlidingRows and
+  /// WrappedRows.
+  ///                                                                                    theory.md (C.2)-(C.8)
   void assemble(const numerics::PathPoint& at, numerics::BorderedSystem& system,
                 Eigen::VectorXd& by_parameter) override;
   /// Of assemble() the residuals [N], [m] alone; matrices of the system are of no use then.

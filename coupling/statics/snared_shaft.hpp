@@ -9,7 +9,8 @@
 
 namespace snare::coupling {
 
-/// Wires closed around a shaft that they hold at their common centre, their chords evenly turned about its axis z.
+/// Wires closed around a shaft that they hold at their common centre, their chords evenly turned about its
+/// axis z.
 ///
 /// Every wire is the wire of `wire`, pushed outward at mid-span by `seat` from first touch before the
 /// friction acts: the state in which closing rings leave it. The chords lie in one plane; wires do not touch
@@ -40,7 +41,7 @@ struct ShaftPath {
 };
 
 /// Quasi-static force of the snared shaft along a way of its axis, which stays parallel to z.
-/// theory.md (R.10)
+///                                                                                           theory.md (R.10)
 /// way: displacements visited in order from the centre [m].
 [[nodiscard]] ShaftPath move_shaft(const SnareSpecification& snare, const std::vector<Eigen::Vector3d>& way);
 

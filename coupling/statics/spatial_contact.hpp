@@ -26,7 +26,8 @@ class SpatialContact {
   SpatialContact(const SpatialContact&) = delete;
   SpatialContact& operator=(const SpatialContact&) = delete;
 
-  /// The wire, the equations at one equilibrium, and the pin as it stands; moving the pin is what makes the next equilibrium another.
+  /// The wire, the equations at one equilibrium, and the pin as it stands; moving the pin is what makes the
+  /// next equilibrium another.
   [[nodiscard]] const wire::SpatialRod& rod() const { return rod_; }
   [[nodiscard]] const SpatialPushSystem& system() const { return system_; }
   [[nodiscard]] SpatialPin& pin() { return system_.pin; }
@@ -44,7 +45,8 @@ class SpatialContact {
     int iterations = 0;                    ///< of all
     std::optional<PushEvent::Kind> event;  ///< the last change of the contact, touch or lift-off
   };
-  /// Newton's method with the contact settled: it opens where it would pull, closes where it would be entered.
+  /// Newton's method with the contact settled: it opens where it would pull, closes where it would be
+  /// entered.
   [[nodiscard]] Settled settle(numerics::PathPoint& trial, int max_iterations);
 
   /// Whether a vertex beside the contact is inside the pin: a wire bent sharper than the pin would lie on it
@@ -67,16 +69,16 @@ class SpatialContact {
     return {system_.pin, system_.accepted(), dissipated_, last_friction_, slip_work_, slides_};
   }
   void restore(const Memory& memory);
-  /// Assembles and factorises at a point, where reactions and pivots are wanted and the last solution was elsewhere.
+  /// Assembles and factorises at a point, where reactions and pivots are wanted and the last solution was
+  /// elsewhere.
   void assemble(const numerics::PathPoint& at) {
     static_cast<void>(numerics::tangent(system_, at, workspace_, nullptr));
   }
 
   /// Whether the wire slides over the pin at the accepted point.
   [[nodiscard]] bool slides() const { return slides_; }
-  [[nodiscard]] double dissipated() const {
-    return dissipated_;
-  }  ///< by friction so far [J], never decreasing
+  /// By friction so far [J], never decreasing.
+  [[nodiscard]] double dissipated() const { return dissipated_; }
   void forget_dissipation() { dissipated_ = 0.0; }
   /// Negative pivots of the last factorisation: unstable modes.
   [[nodiscard]] int negative_pivots() const { return workspace_.solver.negative_pivots(); }

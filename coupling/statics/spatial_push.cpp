@@ -140,7 +140,8 @@ numerics::SolveReport SpatialPush::seat_in_plane(double seat) {
   return {};
 }
 
-// Turns the pin into its tilt, then lets the weight act across the plane, the travel held; a step that fails is halved.
+// Turns the pin into its tilt, then lets the weight act across the plane, the travel held; a step that fails
+// is halved.
 numerics::SolveReport SpatialPush::leave_plane() {
   constexpr double smallest_share = 1e-4;
   const auto in_steps = [&](const auto& set, const char* message) {
@@ -169,9 +170,9 @@ numerics::SolveReport SpatialPush::leave_plane() {
                   "the weight across the plane finds no equilibrium");
 }
 
-// Travel counts from where the force vanishes: the swung wire meets a tilted pin at another height, and a wire that
-// its weight pulls across the plane hangs there. Follows the path down by secants of the force, none of them much longer
-// than the last, and shifts the pin so that travel 0 is where the force is zero.
+// Travel counts from where the force vanishes: the swung wire meets a tilted pin at another height, and a
+// wire that its weight pulls across the plane hangs there. Follows the path down by secants of the force,
+// none of them much longer than the last, and shifts the pin so that travel 0 is where the force is zero.
 numerics::SolveReport SpatialPush::find_first_touch(double seat) {
   constexpr double left =
       0.02;  // share of a secant that is not gone: without force a loose wire swings freely

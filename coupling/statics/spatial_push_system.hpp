@@ -26,10 +26,11 @@ struct SpatialPin {
   double last_zeta = 0.0;  ///< [m]
 };
 
-/// Equilibrium of a spatial rod with one pin, Coulomb friction in both directions of its surface by the projection
+/// Equilibrium of a spatial rod with one pin, Coulomb friction in both directions of its surface by the
+/// projection
 ///   f_T = P(f_T - r v),  P onto the disc of radius mu N                              theory.md (C.11)
-/// (Alart and Curnier 1991), v the slip since the last accepted state: sticking is inside the disc, sliding on its rim.
-/// The parameter is the travel.
+/// (Alart and Curnier 1991), v the slip since the last accepted state: sticking is inside the disc, sliding
+/// on its rim. The parameter is the travel.
 class SpatialPushSystem final : public numerics::PathProblem {
  public:
   static constexpr int border_unknowns = 5;
@@ -63,7 +64,7 @@ class SpatialPushSystem final : public numerics::PathProblem {
   /// Slope of the curve of contact at the contact vertex.
   [[nodiscard]] VertexSlope<3> slope(const wire::SpatialState& state) const;
 
-  /// PathProblem: equilibrium of the rod under f, and the equations in Rows.                    theory.md (C.10), (C.11)
+  /// PathProblem: equilibrium of the rod under f, and the equations in Rows.         theory.md (C.10), (C.11)
   void assemble(const numerics::PathPoint& at, numerics::BorderedSystem& system,
                 Eigen::VectorXd& by_parameter) override;
   [[nodiscard]] double error(const numerics::PathPoint& at,

@@ -14,7 +14,8 @@ Parameter force_on_the_right_clamp() {
 
 }  // namespace
 
-/// The right mount slides along the chord, the wire fast in it, when the force along the chord passes a limit.
+/// The right mount slides along the chord, the wire fast in it, when the force along the chord passes a
+/// limit.
 Effect clamp_slide_right_effect() {
   return {.name = "clamp_slide_right",
           .channel = Channel::mount,

@@ -23,7 +23,8 @@ Parameter shift() {
 
 }  // namespace
 
-/// The pusher touches elsewhere along the chord than declared, by the same distance in all series: a zero of the slide.
+/// The pusher touches elsewhere along the chord than declared, by the same distance in all series: a zero of
+/// the slide.
 Effect contact_position_effect() {
   return {
       .name = "contact_position",

@@ -44,7 +44,8 @@ std::vector<std::vector<double>> creep_trials(const TrialContext& context) {
 
 }  // namespace
 
-/// The reading creeps under load: after a change of the load it continues to change, by a share of that change.
+/// The reading creeps under load: after a change of the load it continues to change, by a share of that
+/// change.
 Effect creep_effect() {
   return {.name = "creep",
           .channel = Channel::sensor,

@@ -42,7 +42,8 @@ struct Effect {
   bool one_sided = false;  ///< the first number can only grow from its null value
   /// Coordinates of the numbers at which to try an effect that has no derivative at null; none: it has one.
   std::vector<std::vector<double>> (*trials)(const TrialContext&) = nullptr;
-  /// Coordinates of the first number, other than its null value, at which refits start; null: the effect is nearly linear.
+  /// Coordinates of the first number, other than its null value, at which refits start; null: the effect is
+  /// nearly linear.
   std::vector<double> (*sizes)(const PushProblem& declared) = nullptr;
   /// Why these series cannot show the effect; empty when they may.
   std::string (*unobservable)(const std::vector<Series>&) = nullptr;

@@ -8,20 +8,24 @@
 
 namespace snare::identification {
 
-/// For Effect::unobservable: only clamps hold the wire's direction, and sections that slip or yield need stiff ones.
+/// For Effect::unobservable: only clamps hold the wire's direction, and sections that slip or yield need
+/// stiff ones.
 [[nodiscard]] std::string needs_clamps(const std::vector<Series>& series);
 
-/// For Effect::sizes: compliances of clamps as shares of that of the wire in bending, length / EI [rad/(N m)].
+/// For Effect::sizes: compliances of clamps as shares of that of the wire in bending, length / EI [rad/(N
+/// m)].
 [[nodiscard]] std::vector<double> sizes_beside_bending(const PushProblem& declared);
 /// For Effect::sizes: compliances along the chord as multiples of that of the wire, length / EA [m/N].
 [[nodiscard]] std::vector<double> sizes_beside_stretching(const PushProblem& declared);
 
-/// For Parameter::limits: up to a hundred times length / EI, where a clamp hardly differs from a pin [rad/(N m)].
+/// For Parameter::limits: up to a hundred times length / EI, where a clamp hardly differs from a pin [rad/(N
+/// m)].
 [[nodiscard]] Limits limits_in_rotation(const PushProblem& declared);
 /// For Parameter::limits: up to a thousand times length / EA [m/N].
 [[nodiscard]] Limits limits_along_chord(const PushProblem& declared);
 
-/// Compliance along the chord of the left (0) or the right (1) mount by itself, in series with that of both mounts [m/N].
+/// Compliance along the chord of the left (0) or the right (1) mount by itself, in series with that of both
+/// mounts [m/N].
 template <std::size_t mount>
 [[nodiscard]] Parameter axial_compliance_of() {
   return {

@@ -14,8 +14,9 @@ Parameter tension_of_the_feed() {
 
 }  // namespace
 
-/// The wire feeds through the left mount by Coulomb's law when its tension passes a limit. Without friction at the pusher
-/// the driving force is the same all along the wire, so that it stands for the right mount and for both: theory.md (C.8).
+/// The wire feeds through the left mount by Coulomb's law when its tension passes a limit. Without friction
+/// at the pusher the driving force is the same all along the wire, so that it stands for the right mount and
+/// for both: theory.md (C.8).
 Effect mount_slip_effect() {
   return {
       .name = "mount_slip",

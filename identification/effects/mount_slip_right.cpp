@@ -22,7 +22,8 @@ std::string told_from_the_left(const std::vector<Series>& series) {
 
 }  // namespace
 
-/// The wire feeds through the right mount; another than through the left one only where the wire rubs on the pusher.
+/// The wire feeds through the right mount; another than through the left one only where the wire rubs on the
+/// pusher.
 Effect mount_slip_right_effect() {
   return {
       .name = "mount_slip_right",

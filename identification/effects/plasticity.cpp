@@ -9,8 +9,9 @@ namespace snare::identification {
 
 namespace {
 
-/// Yield stresses of metals that wires are drawn from [MPa]: annealed copper 33, aluminium 1100-O 34 (ASM Handbook,
-/// vol. 2, 1990), lower than all steels; the tensile strength of the thinnest music wire is below 4000 (ASTM A228).
+/// Yield stresses of metals that wires are drawn from [MPa]: annealed copper 33, aluminium 1100-O 34 (ASM
+/// Handbook, vol. 2, 1990), lower than all steels; the tensile strength of the thinnest music wire is below
+/// 4000 (ASTM A228).
 constexpr double softest = 30.0;
 constexpr double hardest = 4000.0;
 

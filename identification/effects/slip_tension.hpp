@@ -8,7 +8,8 @@
 
 namespace snare::identification {
 
-/// The force beyond which a mount slips in this way and place, as a number that has no key yet: infinite where it does not.
+/// The force beyond which a mount slips in this way and place, as a number that has no key yet: infinite
+/// where it does not.
 template <wire::MountSlip slip, wire::SlipPlace place>
 [[nodiscard]] Parameter slip_tension() {
   return {.parametrisation = Parametrisation::magnitude,
@@ -29,8 +30,8 @@ template <wire::MountSlip slip, wire::SlipPlace place>
           .step = 1e-4};
 }
 
-/// Forces at which a mount may begin to slip, as coordinates, logarithms [-] of newtons: from just above what the buckled wire pushes, which the
-/// mount must have held, to the highest tension of the test.
+/// Forces at which a mount may begin to slip, as coordinates, logarithms [-] of newtons: from just above what
+/// the buckled wire pushes, which the mount must have held, to the highest tension of the test.
 [[nodiscard]] std::vector<std::vector<double>> trial_slip_tensions(const TrialContext& context);
 
 /// For Effect::unobservable: the wire is held by mounts, none of which slips already.

@@ -81,8 +81,8 @@ std::string needs_strand(const std::vector<Series>& series) {
 
 }  // namespace
 
-/// The strands stick to each other up to a curvature and slide then, all at once or one share after the other: stiff at
-/// first, soft later, with a loop.
+/// The strands stick to each other up to a curvature and slide then, all at once or one share after the
+/// other: stiff at first, soft later, with a loop.
 Effect strand_hysteresis_effect() {
   return {.name = "strand_hysteresis",
           .channel = Channel::wire,

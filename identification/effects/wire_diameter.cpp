@@ -33,7 +33,8 @@ std::string needs_a_section(const std::vector<Series>& series) {
 
 }  // namespace
 
-/// The wire is thicker or thinner than declared: both stiffnesses, which follow from the section, change together.
+/// The wire is thicker or thinner than declared: both stiffnesses, which follow from the section, change
+/// together.
 Effect wire_diameter_effect() {
   return {.name = "wire_diameter",
           .channel = Channel::wire,

@@ -59,7 +59,8 @@ Eigen::MatrixXd whiten_noise(const Data& data, const Data::Forces& forces, Eigen
 
 }  // namespace
 
-// With u = sigma L^-1 g, (1 + u u^T)^(-1/2) = 1 - u u^T (1 - 1 / sqrt(1 + |u|^2)) / |u|^2: placings have no rows in common.
+// With u = sigma L^-1 g, (1 + u u^T)^(-1/2) = 1 - u u^T (1 - 1 / sqrt(1 + |u|^2)) / |u|^2: placings have no
+// rows in common.
 Eigen::MatrixXd Data::whiten(const Forces& forces, Eigen::Index columns) const {
   Eigen::MatrixXd result = whiten_noise(*this, forces, columns);
   for (const Direction& d : directions()) {

@@ -29,8 +29,8 @@ struct PlaceEstimate {
   double standard_error = 0.0;      ///< [m]
 };
 
-/// Measured forces of some of a model's series, with what is known of their errors: the noise V_n of every series and the
-/// error of every place,
+/// Measured forces of some of a model's series, with what is known of their errors: the noise V_n of every
+/// series and the error of every place,
 ///   V = V_n + sum_c sigma_c^2 g_c g_c^T,   g_c = dF / d(place c).                          theory.md (I.14)
 struct Data {
   std::vector<std::size_t> series;        ///< which of the model's
@@ -53,12 +53,12 @@ struct Data {
   [[nodiscard]] Eigen::VectorXd residual(const Evaluation& evaluation) const;
   /// Whitened derivatives [1 over the unit of the coordinate], likewise.
   [[nodiscard]] Eigen::MatrixXd jacobian(const Evaluation& evaluation) const;
-  /// The forces less what errors of places have brought, as far as these forces tell: V_n V^-1 f [N], one matrix for each of the
-  /// data's series.
+  /// The forces less what errors of places have brought, as far as these forces tell: V_n V^-1 f [N], one
+  /// matrix for each of the data's series.
   [[nodiscard]] std::vector<Eigen::MatrixXd> placed(const Forces& forces, Eigen::Index columns) const;
 
-  /// Errors of the places [m] at the optimum of a fit to these data, in the order of `placings`. optimum: with the derivatives by the
-  /// fitted coordinates; covariance: of these.
+  /// Errors of the places [m] at the optimum of a fit to these data, in the order of `placings`. optimum:
+  /// with the derivatives by the fitted coordinates; covariance: of these.
   [[nodiscard]] std::vector<PlaceEstimate> places(const Model& model, const Evaluation& optimum,
                                                   const Eigen::MatrixXd& covariance) const;
 
@@ -70,8 +70,9 @@ struct Data {
   [[nodiscard]] std::vector<Direction> directions() const;
 };
 
-/// The placings of a model's series, their derivatives with these settings. Series of one test share a place, the largest
-/// standard deviation counts. None where all places are exact, and where the model cannot be computed.
+/// The placings of a model's series, their derivatives with these settings. Series of one test share a place,
+/// the largest standard deviation counts. None where all places are exact, and where the model cannot be
+/// computed.
 [[nodiscard]] std::vector<Placing> find_placings(const Model& model, const std::vector<Setting>& settings,
                                                  const Parameter& place);
 

@@ -55,7 +55,8 @@ double read_contact_position(const TomlTable& series, double span) {
   return position;
 }
 
-/// `points` values from `from` to `to`, both included, evenly spread; the first is left out where `skip` is 1.
+/// `points` values from `from` to `to`, both included, evenly spread; the first is left out where `skip` is
+/// 1.
 void append_leg(std::vector<double>& travel, double from, double to, int points, int skip) {
   const double step = (to - from) / (points - 1);
   for (int i = skip; i < points - 1; ++i) travel.push_back(from + i * step);
@@ -155,7 +156,8 @@ void rename_columns(const TomlTable& series, const base::TomlNode* node, std::ve
   }
 }
 
-/// Factors of `scale = { "CSV column" = 1000.0 }`, from the file's unit to that of the column's meaning; negative ones turn the sign.
+/// Factors of `scale = { "CSV column" = 1000.0 }`, from the file's unit to that of the column's meaning;
+/// negative ones turn the sign.
 void scale_columns(const TomlTable& series, const base::TomlNode* node, std::vector<CsvColumn>& columns) {
   if (!series.has("scale")) return;
   const auto* entries = entries_of(node, "scale");

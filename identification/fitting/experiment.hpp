@@ -69,7 +69,8 @@ struct Experiment {
   std::vector<Series> series;
   std::vector<std::string> free;     ///< dotted keys that a calibration may change
   std::vector<std::string> heldout;  ///< names of series never used for fitting or selection
-  /// Share of the largest measured force below which nothing is called missing, in [0, 0.5]; absent: see tracing.
+  /// Share of the largest measured force below which nothing is called missing, in [0, 0.5]; absent: see
+  /// tracing.
   std::optional<double> model_tolerance;
   PublishedScatter published_scatter = PublishedScatter::common;  ///< of lost readings of published fits
   SolverSettings solver;

@@ -35,11 +35,12 @@ struct Finding {
 /// At which end of its admissible values a fitted number stands.
 enum class AtBound { none, lower, upper };
 
-/// Whether a value stands on one of its bounds, to 1e-6 of their distance; exactly where only one is finite. In the unit of the number [any].
+/// Whether a value stands on one of its bounds, to 1e-6 of their distance; exactly where only one is finite.
+/// In the unit of the number [any].
 [[nodiscard]] AtBound at_bound(double value, double lower, double upper);
 
-/// The 95 % interval of a fitted number as the command says it: "[1, 2]", "[1, unbounded]", "not determined by the readings",
-/// and the bound on which the number stands. Ends in the number's unit.
+/// The 95 % interval of a fitted number as the command says it: "[1, 2]", "[1, unbounded]", "not determined
+/// by the readings", and the bound on which the number stands. Ends in the number's unit.
 [[nodiscard]] std::string interval_words(std::optional<double> lower, std::optional<double> upper,
                                          bool identified, AtBound bound);
 

@@ -23,7 +23,8 @@ constexpr double near_margin =
     300.0;  // the same: below so many errors a direction that is seen is checked, too
 constexpr double weakly_seen = 0.1;  // if its numbers nearly go together
 
-/// Singular directions of the columns `live`, scaled to norm 1, parted into those that the readings see and null ones.
+/// Singular directions of the columns `live`, scaled to norm 1, parted into those that the readings see and
+/// null ones.
 struct Parted {
   MatrixXd null;      // columns of norm 1, in scaled numbers
   double leak = 0.0;  // size of the components of `null` that are due to errors of the derivatives
@@ -56,7 +57,8 @@ Parted part(const MatrixXd& scaled, const MatrixXd& error, const VectorXd& scale
   return parted;
 }
 
-/// Basis of the columns of `null` in which each has a row of its own: Gauss-Jordan elimination with complete pivoting.
+/// Basis of the columns of `null` in which each has a row of its own: Gauss-Jordan elimination with complete
+/// pivoting.
 /// rows: the pivots, in the order of the columns.
 void reduce(MatrixXd& null, std::vector<Index>& rows) {
   const Index d = null.cols();

@@ -21,35 +21,41 @@ struct NullDirection {
 struct Identifiability {
   std::vector<NullDirection> directions;  ///< a basis of the null space in which few numbers move
   std::vector<bool> known;                ///< one a number: none of the directions moves it
-  /// Covariance of the numbers in the units of the Jacobian's columns, with the `held` ones held; zero in their rows.
+  /// Covariance of the numbers in the units of the Jacobian's columns, with the `held` ones held; zero in
+  /// their rows.
   Eigen::MatrixXd covariance;
 
   /// Whether number k is determined; true where the rank was not asked.
   [[nodiscard]] bool is_known(std::size_t k) const { return k >= known.size() || known[k]; }
-  /// Makes number k the held one of another null direction: `others` move with it, and what is correlated with it by 0.3 and more, by
-  /// `change` over it, in the units of the columns. jacobian: the one that was asked.
+  /// Makes number k the held one of another null direction: `others` move with it, and what is correlated
+  /// with it by 0.3 and more, by `change` over it, in the units of the columns. jacobian: the one that was
+  /// asked.
   void add_direction(std::size_t k, const std::vector<std::size_t>& others, const Eigen::VectorXd& change,
                      const Eigen::MatrixXd& jacobian);
 };
 
-/// Decides about a direction d (in the units of the Jacobian's columns) that the errors of the derivatives leave in doubt: whether
-/// chi2 stays where it is along it, as stays_along() has it for a step that should change the residual by `doubtful_change`.
+/// Decides about a direction d (in the units of the Jacobian's columns) that the errors of the derivatives
+/// leave in doubt: whether chi2 stays where it is along it, as stays_along() has it for a step that should
+/// change the residual by `doubtful_change`.
 using NullCheck = std::function<bool(const Eigen::VectorXd& direction)>;
 
-/// Change of the residual [-] that a direction in doubt promises with the step of its check, five standard errors.
+/// Change of the residual [-] that a direction in doubt promises with the step of its check, five standard
+/// errors.
 inline constexpr double doubtful_change = 5.0;
 
-/// Whether a rise of chi2 [-] by a step that should change the residual by `change` [-] is that of a null direction: below 1 + change^2 / 5.
+/// Whether a rise of chi2 [-] by a step that should change the residual by `change` [-] is that of a null
+/// direction: below 1 + change^2 / 5.
 [[nodiscard]] constexpr bool is_no_rise(double rise, double change) {
   return rise < 1.0 + change * change / 5.0;
 }
 
 /// Rank of the scaled Jacobian at the answer of a fit.                                       theory.md (I.32)
 ///   J v, |columns of J| = 1: a singular direction v is null where |J v| <= 3 |E v| + floor
-/// jacobian: of the whitened residual [-], a column a number; error: of its entries, as the difference of the derivatives by two
-/// step sizes (same shape; empty: exact derivatives). check: asked where |E v| > 0.001 (without a check such directions are null) and where
-/// 3 |E v| < |J v| <= 300 |E v|, |J v| < 0.1 (without one these are seen).
-/// A column below its own error is a direction of its own, of which `check` is asked, too.
+/// jacobian: of the whitened residual [-], a column a number; error: of its entries, as the difference of the
+/// derivatives by two step sizes (same shape; empty: exact derivatives). check: asked where |E v| > 0.001
+/// (without a check such directions are null) and where 3 |E v| < |J v| <= 300 |E v|, |J v| < 0.1 (without
+/// one these are seen). A column below its own error is a direction of its own, of which `check` is asked,
+/// too.
 [[nodiscard]] Identifiability identifiability_of(const Eigen::MatrixXd& jacobian,
                                                  const Eigen::MatrixXd& error, const NullCheck& check = {});
 

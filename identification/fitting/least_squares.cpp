@@ -160,7 +160,8 @@ void fail(const std::string& message, Fit& fit) {
   fit.report.end(numerics::Termination::step_too_small, message);
 }
 
-/// The unknown is the coordinate over a scale by which it changes the residual by about one standard deviation in all.
+/// The unknown is the coordinate over a scale by which it changes the residual by about one standard
+/// deviation in all.
 Eigen::VectorXd scale_of(const Eigen::MatrixXd& jacobian) {
   Eigen::VectorXd scale(jacobian.cols());
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
@@ -170,7 +171,8 @@ Eigen::VectorXd scale_of(const Eigen::MatrixXd& jacobian) {
   return scale;
 }
 
-/// Gives the bounds of the numbers to the problem and moves the unknowns inside. Whether one of them had to move.
+/// Gives the bounds of the numbers to the problem and moves the unknowns inside. Whether one of them had to
+/// move.
 bool bound(const Model& model, const Fit& fit, const Eigen::VectorXd& scale, Eigen::VectorXd& unknown,
            ceres::Problem& problem) {
   bool moved = false;
@@ -225,8 +227,9 @@ double fall_of_others(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& gr
   return (unit_directions(jacobian(Eigen::all, others)).transpose() * gradient(others)).squaredNorm();
 }
 
-/// Steps that are cut off at a bound may end where chi2 still falls along it. Such a fit is continued with the numbers held that
-/// are kept by their bounds, until the others come to rest and no held number would leave its bound. Returns the iterations.
+/// Steps that are cut off at a bound may end where chi2 still falls along it. Such a fit is continued with
+/// the numbers held that are kept by their bounds, until the others come to rest and no held number would
+/// leave its bound. Returns the iterations.
 int solve_along_bounds(const FitOptions& options, const Residuals& residuals, Eigen::VectorXd& unknown,
                        ceres::Problem& problem, ceres::Solver::Summary& summary) {
   constexpr int most = 4;
@@ -314,7 +317,8 @@ bool stays_along(const Model& model, const Data& data, const Fit& optimum, const
   const double lower = model.lower(*centre.parameter), upper = model.upper(*centre.parameter);
   const double promised =
       (optimum.jacobian * direction).norm() / std::abs(direction[most]);  // by a step of one
-  // At most a fifth of the number itself, a tenth of where it may be: far beyond its standard error, were it known.
+  // At most a fifth of the number itself, a tenth of where it may be: far beyond its standard error, were it
+  // known.
   const double far =
       centre.parameter->parametrisation == Parametrisation::shift ? 0.1 * (upper - lower) : 0.2;
   double step = std::min(far, doubtful_change / std::max(promised, 1e-300));
@@ -366,8 +370,9 @@ std::vector<Setting> others_beside(const Model& model, const Fit& optimum, std::
   return others;
 }
 
-/// chi2 with `held` settings at the optimum of the others, beginning at `others`, by steps with the derivatives of the optimum of all,
-/// which need no new ones: where these come to their end, that is expect no more of another than `enough`.
+/// chi2 with `held` settings at the optimum of the others, beginning at `others`, by steps with the
+/// derivatives of the optimum of all, which need no new ones: where these come to their end, that is expect
+/// no more of another than `enough`.
 std::optional<double> chi2_by_chords(const Model& model, const Data& data, const Eigen::MatrixXd& jacobian,
                                      std::vector<Setting> others, const std::vector<Setting>& held,
                                      double enough,

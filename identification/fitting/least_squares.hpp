@@ -26,7 +26,8 @@ struct Fit {
   double noise_dof = std::numeric_limits<double>::infinity();  ///< of the noise by which it is whitened
   double estimated =
       0.0;  ///< standard deviations that are estimated from the same data: those of published fits
-  /// Degrees of freedom: whitened numbers less fitted ones and estimated standard deviations, may be negative.
+  /// Degrees of freedom: whitened numbers less fitted ones and estimated standard deviations, may be
+  /// negative.
   [[nodiscard]] double dof() const {
     return static_cast<double>(residual.size()) - static_cast<double>(free) - estimated;
   }
@@ -51,24 +52,28 @@ struct FitOptions {
 [[nodiscard]] Fit fit(const Model& model, const Data& data, const std::vector<Setting>& start,
                       const std::vector<Setting>& fixed = {}, const FitOptions& options = {});
 
-/// Fills `rank` of a usable fit: derivatives by twice the step tell the error of those that it has, and a direction that they
-/// leave in doubt is null where chi2 rises by less than 1 when the number that moves most is moved along it and held, all
-/// others refitted. With null directions the covariance becomes that of `rank`.                theory.md (I.32)
+/// Fills `rank` of a usable fit: derivatives by twice the step tell the error of those that it has, and a
+/// direction that they leave in doubt is null where chi2 rises by less than 1 when the number that moves most
+/// is moved along it and held, all
+/// others refitted. With null directions the covariance becomes that of `rank`.              theory.md (I.32)
 void find_rank(const Model& model, const Data& data, Fit& fit);
 
-/// Ends of the interval of one coordinate (in its unit) in which the profile of chi2 [-] (all others refitted) stays within `rise` of its
+/// Ends of the interval of one coordinate (in its unit) in which the profile of chi2 [-] (all others
+/// refitted) stays within `rise` of its
 /// minimum: 3.84 for 95 %. An end at a bound of the number, or where no refit succeeds, is absent.
 struct ProfileInterval {
   std::optional<double> lower;
   std::optional<double> upper;
 };
-/// which: of the fitted settings, from 0. rise of chi2 [-], > 0. progress: as in FitOptions; after false both ends may be absent.
+/// which: of the fitted settings, from 0. rise of chi2 [-], > 0. progress: as in FitOptions; after false both
+/// ends may be absent.
 [[nodiscard]] ProfileInterval profile_interval(
     const Model& model, const Data& data, const Fit& optimum, std::size_t which, double rise,
     const std::function<bool(int iteration, double chi2)>& progress = {});
 
-/// Directions D of the coordinates in which the whitened residual changes by one, in columns, D^T J^T J D = 1: by singular values, those below
-/// 1e-10 of the largest (columns of J scaled to one) left out. In the units of the columns' coordinates.
+/// Directions D of the coordinates in which the whitened residual changes by one, in columns, D^T J^T J D =
+/// 1: by singular values, those below 1e-10 of the largest (columns of J scaled to one) left out. In the
+/// units of the columns' coordinates.
 [[nodiscard]] Eigen::MatrixXd unit_directions(const Eigen::MatrixXd& jacobian);
 
 /// (J^T J)^-1 = D D^T of these directions, in the units of the columns' coordinates.

@@ -12,10 +12,12 @@ struct Leg {
   bool up = true;                  ///< the displacement grows
 };
 
-/// Indices at which a record of displacements [m] turns back by more than 2 % of its range, with its ends; not empty.
+/// Indices at which a record of displacements [m] turns back by more than 2 % of its range, with its ends;
+/// not empty.
 [[nodiscard]] std::vector<std::size_t> turning_points(const std::vector<double>& displacement);
 
-/// The legs of a record of displacements [m], one after the other. It turns where it goes back by more than 2 % of its range.
+/// The legs of a record of displacements [m], one after the other. It turns where it goes back by more than 2
+/// % of its range.
 [[nodiscard]] std::vector<Leg> legs_of(const std::vector<double>& displacement);
 
 }  // namespace snare::identification

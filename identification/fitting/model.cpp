@@ -54,7 +54,8 @@ std::vector<std::vector<coupling::PushVariation>> variations_of(const std::vecto
   return variations;
 }
 
-/// Change of the record of a series with its reading model: the true forces go along the curve to the changed travels.
+/// Change of the record of a series with its reading model: the true forces go along the curve to the changed
+/// travels.
 Eigen::VectorXd record_with(const Series& series, const Prediction& prediction, const ReadingModel& changed,
                             const Eigen::VectorXd& slope) {
   TrueForce wire = prediction.wire;
@@ -68,8 +69,9 @@ Eigen::VectorXd record_with(const Series& series, const Prediction& prediction, 
   return Eigen::Map<const Eigen::VectorXd>(force.data(), static_cast<Eigen::Index>(force.size()));
 }
 
-/// Derivatives of the recorded forces of a series by every number: those of the push from the prediction, whose last column is
-/// the slope of the curve where a number moves the travels; those of the record by differences of the record alone.
+/// Derivatives of the recorded forces of a series by every number: those of the push from the prediction,
+/// whose last column is the slope of the curve where a number moves the travels; those of the record by
+/// differences of the record alone.
 Eigen::MatrixXd record_derivatives(const Series& declared, const Prediction& prediction,
                                    const std::vector<Setting>& settings,
                                    const std::vector<const Parameter*>& by) {

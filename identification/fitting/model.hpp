@@ -50,9 +50,9 @@ class Model {
   };
   [[nodiscard]] Applied apply(const std::vector<Setting>& settings) const;
 
-  /// Forces [N], and their derivatives by the coordinates of `by` (settings, or further numbers at their declared values).
-  /// Implicit differentiation; central differences of whole curves where coupling::differentiable() says no. The steps of the
-  /// differences are `widen` times the usual ones, > 0.
+  /// Forces [N], and their derivatives by the coordinates of `by` (settings, or further numbers at their
+  /// declared values). Implicit differentiation; central differences of whole curves where
+  /// coupling::differentiable() says no. The steps of the differences are `widen` times the usual ones, > 0.
   [[nodiscard]] Evaluation evaluate(const std::vector<Setting>& settings,
                                     const std::vector<const Parameter*>& by = {}, double widen = 1.0) const;
 

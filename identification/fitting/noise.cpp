@@ -22,7 +22,8 @@ double range_of_forces(const std::vector<Series>& series) {
   return high - low;
 }
 
-/// Published fits among the series, with the standard deviations that they declare, or with that about parabolas.
+/// Published fits among the series, with the standard deviations that they declare, or with that about
+/// parabolas.
 void add_published(const std::vector<Series>& series, Noise& noise) {
   const std::vector<PublishedSeries> published = published_series(series);
   if (published.empty()) return;
@@ -37,8 +38,8 @@ void add_published(const std::vector<Series>& series, Noise& noise) {
 
 }  // namespace
 
-// The smooth part is h_i x_i, x of unit variance with x_i = decay_i x_{i-1} + noise (Ornstein and Uhlenbeck): a Kalman
-// filter's innovations over their deviations are the whitened values, in order and linear in them.
+// The smooth part is h_i x_i, x of unit variance with x_i = decay_i x_{i-1} + noise (Ornstein and Uhlenbeck):
+// a Kalman filter's innovations over their deviations are the whitened values, in order and linear in them.
 //   P = decay^2 P+ + 1 - decay^2,  S = h^2 P + w^2,  gain = P h / S,  P+ = (1 - gain h) P
 std::vector<Noise::Step> noise_filter(const std::vector<double>& d, double white, double length,
                                       const std::vector<double>& height) {

@@ -22,8 +22,8 @@ struct Bessel {
   double ratio = 0.0;   ///< I_(nu+1)(z) / (z I_nu(z)) = d log 0F1 / dz / z
 };
 
-// 0F1 = sum_j a_j, a_j = (z/2)^(2j) / (j! (k/2)_j);  d log 0F1 / dz / z = 1/2 sum_j a_j / (k/2 + j) / sum_j a_j. All
-// terms are positive.
+// 0F1 = sum_j a_j, a_j = (z/2)^(2j) / (j! (k/2)_j);  d log 0F1 / dz / z = 1/2 sum_j a_j / (k/2 + j) / sum_j
+// a_j. All terms are positive.
 Bessel by_series(double half, double z, double log_gamma) {
   const double x = 0.25 * z * z;
   double term = 1.0;
@@ -87,8 +87,8 @@ struct Density {
   double along = 0.0;  ///< d log f / dt
 };
 
-// With z = m t, rho = I_(nu+1) / (z I_nu) and kappa = rho' / z = (1 - z^2 rho^2 - k rho) / z^2 (which is -2 / (k^2 (k +
-// 2)) at z = 0):
+// With z = m t, rho = I_(nu+1) / (z I_nu) and kappa = rho' / z = (1 - z^2 rho^2 - k rho) / z^2 (which is -2 /
+// (k^2 (k + 2)) at z = 0):
 //   d/dq = (t^2 rho - 1) / (2 sigma^2),  d/ds = t^2 + m^2 - 2 z^2 rho - k, and so on.
 Density density(double t, double k, double m, double sigma, double log_gamma) {
   const double z = m * t;
@@ -108,7 +108,8 @@ Density density(double t, double k, double m, double sigma, double log_gamma) {
   return d;
 }
 
-/// Sums densities in logarithms: log of the sum, means of the derivatives, and the covariance of the first ones.
+/// Sums densities in logarithms: log of the sum, means of the derivatives, and the covariance of the first
+/// ones.
 class Sum {
  public:
   void add(const Density& d, double log_weight) {
@@ -158,8 +159,9 @@ double log_noncentral_chi(double t, double components, double mean) {
   return density(t, components, mean, 1.0, boost::math::lgamma(0.5 * components, in_double())).log;
 }
 
-// The density of t has one peak, near sqrt(k - 1 + m^2), and a standard deviation of at most one; above the peak it falls faster
-// than a normal one. Beyond 9 deviations, or where it has fallen by e^-45 along its slope, nothing counts.
+// The density of t has one peak, near sqrt(k - 1 + m^2), and a standard deviation of at most one; above the
+// peak it falls faster than a normal one. Beyond 9 deviations, or where it has fallen by e^-45 along its
+// slope, nothing counts.
 IntervalProbability length_probability(double lower, double upper, double components, double square,
                                        double log_sigma) {
   const double sigma = std::exp(log_sigma);

@@ -18,7 +18,7 @@ enum class Parametrisation {
   magnitude  ///< exp(c) in SI units: a threshold that is absent (infinite) in the declared model
 };
 
-/// Where a number acts, which decides how the recorded force is differentiated by it.            theory.md (I.2)
+/// Where a number acts, which decides how the recorded force is differentiated by it.         theory.md (I.2)
 enum class Derivative {
   push,    ///< of the push: implicit differentiation of the equilibrium
   travel,  ///< of the record, moves the travels at which it was taken: by the slope of the curve
@@ -61,10 +61,11 @@ struct Parameter {
   double step = 0.0;  ///< of the coordinate, for differences of the residual, > 0
   Derivative derivative = Derivative::push;
   bool reports_change = false;  ///< files show the change from the declared value in place of the value
-  /// Of a compliance along the chord: 1 for the left and the right mount that is rigid and gives by this number, else 0; rigid
-  /// mounts are differentiated as such. Null: the number is no such compliance.
+  /// Of a compliance along the chord: 1 for the left and the right mount that is rigid and gives by this
+  /// number, else 0; rigid mounts are differentiated as such. Null: the number is no such compliance.
   std::array<double, 2> (*mounts_give)(const PushProblem&) = nullptr;
-  /// Why the forces of a test cannot depend on it; empty: they may. Null: they always may, or its effect says why.
+  /// Why the forces of a test cannot depend on it; empty: they may. Null: they always may, or its effect says
+  /// why.
   const char* (*unseen)(const PushProblem&) = nullptr;
   std::string only{};  ///< name of the one series that it belongs to; empty: all
 

@@ -10,8 +10,8 @@
 
 namespace snare::identification {
 
-/// The numbers that a fit may change, by their keys. Who fits gives the set (the catalogue's is parameters()). A number
-/// is known by its address: the set keeps every address for its own life.
+/// The numbers that a fit may change, by their keys. Who fits gives the set (the catalogue's is
+/// parameters()). A number is known by its address: the set keeps every address for its own life.
 class ParameterSet {
  public:
   /// Numbers with different keys, in the order in which messages list them; they must outlive the set.

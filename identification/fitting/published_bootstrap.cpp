@@ -19,7 +19,8 @@ class Printer {
  public:
   explicit Printer(const PublishedDeviance& deviance) : deviance_(deviance) {}
 
-  // y = F + e: Q^T y is normal about f + A x, and |(I - H) y|^2 = (|v + V x| + sigma e)^2 + sigma^2 chi^2_(n - 4).
+  // y = F + e: Q^T y is normal about f + A x, and |(I - H) y|^2 = (|v + V x| + sigma e)^2 + sigma^2 chi^2_(n
+  // - 4).
   std::vector<PublishedNumbers> draw(const Point& truth, Random& random) {
     std::vector<PublishedNumbers> result;
     for (std::size_t k = 0; k < deviance_.series().size(); ++k) {

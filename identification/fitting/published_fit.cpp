@@ -111,8 +111,8 @@ Point PublishedModel::best() const {
   return point;
 }
 
-// Gauss-Newton steps: the curves are linear about the current numbers, the likelihood is exact. A step that does not
-// lower the deviance is halved.
+// Gauss-Newton steps: the curves are linear about the current numbers, the likelihood is exact. A step that
+// does not lower the deviance is halved.
 bool PublishedModel::fit() {
   constexpr int most_iterations = 30;
   constexpr int most_halvings = 8;

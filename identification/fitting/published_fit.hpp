@@ -19,7 +19,7 @@ struct FitComparison {
   double scatter = 0.0;      ///< standard deviation of a lost reading of this series [N]
 };
 
-/// Published fits of all series against the curves that fit them best.                                theory.md (I.11)
+/// Published fits of all series against the curves that fit them best.                       theory.md (I.11)
 struct SummaryStatistics {
   double chi2 = 0.0;  ///< deviance of coefficients and R2 [-]; may be negative
   double coefficients =
@@ -32,7 +32,8 @@ struct SummaryStatistics {
   std::vector<FitComparison> series;  ///< those with a law, in their order
 };
 
-/// P of SummaryStatistics below which the model is rejected. A few published fits cannot support a finer statement.
+/// P of SummaryStatistics below which the model is rejected. A few published fits cannot support a finer
+/// statement.
 inline constexpr double least_published_p = 0.01;
 
 /// Replicates of the bootstrap, and the least P that it can give.
@@ -47,15 +48,17 @@ struct SummaryOptions {
   bool bootstrap = true;     ///< else p is 1 and the scatter is that of greatest likelihood
 };
 
-/// Fits the first `free` of `settings` to the published numbers by maximum likelihood, from where they are, and finds
-/// how often such a misfit comes by chance. As many lost readings are assumed as a series has travels, placed as they
-/// are. series: of the model, those that count; ones without a law are left out. The same bits for the same input.
+/// Fits the first `free` of `settings` to the published numbers by maximum likelihood, from where they are,
+/// and finds how often such a misfit comes by chance. As many lost readings are assumed as a series has
+/// travels, placed as they are. series: of the model, those that count; ones without a law are left out. The
+/// same bits for the same input.
 [[nodiscard]] SummaryStatistics summary_statistics(const Model& model, const std::vector<std::size_t>& series,
                                                    const std::vector<Setting>& settings, std::size_t free,
                                                    const SummaryOptions& options = {});
 
-/// P that a set of lost readings of the curves at `best` gives a misfit as large, by a parametric bootstrap with linear curves,
-/// which need no solves; sigma, corrected: the standard deviation is divided by its own bias first.
+/// P that a set of lost readings of the curves at `best` gives a misfit as large, by a parametric bootstrap
+/// with linear curves, which need no solves; sigma, corrected: the standard deviation is divided by its own
+/// bias first.
 struct BootstrapResult {
   double p = 1.0;
   double bias = 1.0;  ///< mean of the estimated variance over the true one [-]

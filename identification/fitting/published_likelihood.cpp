@@ -47,7 +47,8 @@ double middle_squares(const PublishedNumbers& numbers) {
   return std::isfinite(numbers.upper) ? 0.5 * (low + numbers.upper * numbers.upper) : 2.0 * low;
 }
 
-/// q >= 0 with the greatest probability of a printed R2 [N^2]: log P has one maximum, at zero or where its derivative changes sign.
+/// q >= 0 with the greatest probability of a printed R2 [N^2]: log P has one maximum, at zero or where its
+/// derivative changes sign.
 double likeliest_square(const PublishedNumbers& numbers, double components, double log_sigma) {
   const auto rises_at = [&](double root) {
     return length_probability(numbers.lower, numbers.upper, components, root * root, log_sigma).by_square >
@@ -64,7 +65,8 @@ double likeliest_square(const PublishedNumbers& numbers, double components, doub
   return high * high;
 }
 
-/// -2 log likelihood of a parabola of its own for a series, with its own standard deviation unless that is declared.
+/// -2 log likelihood of a parabola of its own for a series, with its own standard deviation unless that is
+/// declared.
 double own_parabola(const PublishedSeries& series, const PublishedNumbers& numbers) {
   const double s =
       series.sigma
@@ -200,7 +202,8 @@ double PublishedDeviance::Point::sigma(const PublishedSeries& one, Index k) cons
   return one.sigma ? *one.sigma : std::exp(log_sigma + (own.size() > 0 ? own[k] : 0.0));
 }
 
-/// -2 log likelihood at a point, its gradient and second derivatives, and a positive scale of the latter's diagonal.
+/// -2 log likelihood at a point, its gradient and second derivatives, and a positive scale of the latter's
+/// diagonal.
 struct PublishedDeviance::Value {
   double deviance = 0.0;
   double coefficients = 0.0;
@@ -241,9 +244,10 @@ PublishedDeviance::Point PublishedDeviance::start() const {
   return point;
 }
 
-// With r = Q^T y - f - A x, c = v + V x, q = |c|^2, s the logarithm of a series' standard deviation and L(q, s) = log P
-// of its interval:
-//   D = sum 6 s + |r|^2 e^(-2s) - 2 L(q, s) + (u / 0.3)^2, less the same of a parabola for each, which minimise() takes off.
+// With r = Q^T y - f - A x, c = v + V x, q = |c|^2, s the logarithm of a series' standard deviation and L(q,
+// s) = log P of its interval:
+//   D = sum 6 s + |r|^2 e^(-2s) - 2 L(q, s) + (u / 0.3)^2, less the same of a parabola for each,
+//     which minimise() takes off.
 PublishedDeviance::Value PublishedDeviance::at(const std::vector<PublishedNumbers>& numbers,
                                                const Eigen::VectorXd& x) const {
   const Index p = steps();

@@ -11,24 +11,26 @@
 
 namespace snare::identification {
 
-/// Q^T, (3, n): an orthonormal basis of the quadratics over these travels [m], n >= 3, as rows. Readings y = F(d) + e, e of
-/// variance sigma^2, give Q^T y the covariance sigma^2 I.
+/// Q^T, (3, n): an orthonormal basis of the quadratics over these travels [m], n >= 3, as rows. Readings y =
+/// F(d) + e, e of variance sigma^2, give Q^T y the covariance sigma^2 I.
 [[nodiscard]] Eigen::MatrixXd quadratic_basis(const std::vector<double>& travel);
 
-/// The least-squares fit of A, B, C to readings, as a paper prints it. force: at n >= 4 travels [N]; digits: decimals of R2.
+/// The least-squares fit of A, B, C to readings, as a paper prints it. force: at n >= 4 travels [N]; digits:
+/// decimals of R2.
 [[nodiscard]] QuadraticLaw printed_law(const std::vector<double>& travel, const Eigen::VectorXd& force,
                                        int digits);
 
-/// The numbers that a paper prints of one series, as data: three coefficients and an interval for the sum of squares about
-/// them.                                                                                               theory.md (I.11)
+/// The numbers that a paper prints of one series, as data: three coefficients and an interval for the sum of
+/// squares about
+/// them.                                                                                     theory.md (I.11)
 struct PublishedNumbers {
   Eigen::Vector3d coefficients = Eigen::Vector3d::Zero();  ///< Q^T of the printed parabola [N]
   double lower = 0.0;  ///< sqrt(SSE) at the largest R2 that rounds to the printed one [N], >= 0
   double upper = 0.0;  ///< and at the smallest one [N]; infinite where R2 rounds to zero
 };
 
-/// A printed R2 stands for an interval of half a unit of its last digit either way. about_mean: SSR, the sum of squares
-/// of the printed parabola about its mean [N^2]; SSE = SSR (1 - R2) / R2.
+/// A printed R2 stands for an interval of half a unit of its last digit either way. about_mean: SSR, the sum
+/// of squares of the printed parabola about its mean [N^2]; SSE = SSR (1 - R2) / R2.
 [[nodiscard]] PublishedNumbers published_numbers(const Eigen::Vector3d& coefficients, double about_mean,
                                                  double r_squared, int digits);
 
@@ -60,9 +62,10 @@ struct PublishedSeries {
 /// How many standard deviations are unknown, common or one each.
 [[nodiscard]] double estimated_scatters(const std::vector<PublishedSeries>& series, PublishedScatter scatter);
 
-/// The likelihood of one published fit with a standard deviation that is known, as residuals of a least-squares fit:
+/// The likelihood of one published fit with a standard deviation that is known, as residuals of a
+/// least-squares fit:
 ///   r_1..3 = Q^T (y - F) / sigma,   r_4^2 = 2 (max L - L(q)),   q = |(I - H) F|^2,
-/// L the logarithm of the probability of the printed R2; r_4 has the sign of (best q) - q.            theory.md (I.11)
+/// L the logarithm of the probability of the printed R2; r_4 has the sign of (best q) - q.   theory.md (I.11)
 class PublishedRows {
  public:
   static constexpr Eigen::Index count = 4;
@@ -86,8 +89,8 @@ class PublishedRows {
   double best_log_ = 0.0;
 };
 
-/// The computed curve of one series, linear in steps x of the fitted coordinates: coefficients f + A x and, off the
-/// parabolas, a vector of the length |v + V x| = |(I - H) F|.
+/// The computed curve of one series, linear in steps x of the fitted coordinates: coefficients f + A x and,
+/// off the parabolas, a vector of the length |v + V x| = |(I - H) F|.
 struct LinearCurve {
   Eigen::Vector3d f;
   Eigen::MatrixXd A;  ///< (3, p)
@@ -99,9 +102,9 @@ struct LinearCurve {
 [[nodiscard]] LinearCurve linear_curve(const PublishedSeries& series, const Eigen::VectorXd& force,
                                        const Eigen::MatrixXd& by);
 
-/// Deviance of published fits under linear curves: -2 log likelihood, less that of a parabola and a standard deviation
-/// for every series, which have as many numbers as were printed.
-///  theory.md (I.11)
+/// Deviance of published fits under linear curves: -2 log likelihood, less that of a parabola and a standard
+/// deviation for every series, which have as many numbers as were printed.
+///                                                                                           theory.md (I.11)
 class PublishedDeviance {
  public:
   PublishedDeviance(std::vector<PublishedSeries> series, std::vector<LinearCurve> curves,
@@ -117,14 +120,18 @@ class PublishedDeviance {
     /// Standard deviation of a reading of one of the series [N].
     [[nodiscard]] double sigma(const PublishedSeries& series, Eigen::Index k) const;
   };
-  /// The least deviance, from a point near it; by Newton's method with damping. numbers: printed ones, one a series.
+  /// The least deviance, from a point near it; by Newton's method with damping. numbers: printed ones, one a
+  /// series.
   [[nodiscard]] Point minimise(const std::vector<PublishedNumbers>& numbers, const Point& start) const;
   [[nodiscard]] Point minimise(const Point& start) const;
-  /// What tests the model: the deviance at a point, against a curve for every series that goes through the printed parabola, with a
-  /// standard deviation of its own s, and as curved as the computed one, up to three quarters of SSE:
-  ///   M = sum 6 log(sigma / s) + |Q^T (y - F)|^2 / sigma^2 - 2 log P(q, sigma) + 2 log P(min(q, 3/4 SSE), s),
-  /// s of greatest likelihood [-]; where sigma is declared, s = sigma and q is the likeliest one. Its law hardly depends on the curves;
-  /// that of `deviance` does.                                                                            theory.md (I.11)
+  /// What tests the model: the deviance at a point, against a curve for every series that goes through the
+  /// printed parabola, with a standard deviation of its own s, and as curved as the computed one, up to three
+  /// quarters of SSE:
+  ///   M = sum 6 log(sigma / s) + |Q^T (y - F)|^2 / sigma^2 - 2 log P(q, sigma) + 2 log P(min(q, 3/4 SSE),
+  ///     s),
+  /// s of greatest likelihood [-]; where sigma is declared, s = sigma and q is the likeliest one. Its law
+  /// hardly depends on the curves;
+  /// that of `deviance` does.                                                                theory.md (I.11)
   [[nodiscard]] double misfit(const std::vector<PublishedNumbers>& numbers, const Point& point) const;
   [[nodiscard]] double misfit(const Point& point) const;
   /// No step, the scatter about parabolas.

@@ -29,8 +29,8 @@ std::vector<double> delayed(const std::vector<double>& d, const std::vector<doub
   return result;
 }
 
-/// What follows a record with so much play: it stands still where the record turns back, until the play is taken up.
-/// An odd function of the play, so that it has a derivative at zero.
+/// What follows a record with so much play: it stands still where the record turns back, until the play is
+/// taken up. An odd function of the play, so that it has a derivative at zero.
 std::vector<double> with_play(std::vector<double> d, double play) {
   const double width = std::abs(play);
   double follows = d.empty() ? 0.0 : d.front();
@@ -91,7 +91,8 @@ std::vector<double> speeds(const Series& series) {
   std::vector<double> result(d.size(), 0.0);
   if (!series.readings || series.readings->time.size() != d.size()) return result;
   const std::vector<double>& t = series.readings->time;
-  // Over the interval before a reading, whose rate a wire that relaxes remembers; the first has that after it.
+  // Over the interval before a reading, whose rate a wire that relaxes remembers; the first has that after
+  // it.
   for (std::size_t i = 0; i < d.size(); ++i) {
     const std::size_t a = i == 0 ? 0 : i - 1;
     const std::size_t b = i == 0 ? std::min<std::size_t>(1, d.size() - 1) : i;

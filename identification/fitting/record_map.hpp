@@ -12,7 +12,8 @@ namespace snare::identification {
 /// Recorded displacements of a series [m].
 [[nodiscard]] const std::vector<double>& measured_displacement(const Series& series);
 
-/// Speed of the pusher at the readings of a series by differences over neighbouring times [m/s]; zero without times.
+/// Speed of the pusher at the readings of a series by differences over neighbouring times [m/s]; zero without
+/// times.
 [[nodiscard]] std::vector<double> speeds(const Series& series);
 
 /// What the wire and the pusher do at the readings of a series, one entry a reading.
@@ -28,7 +29,8 @@ struct TrueForce {
 [[nodiscard]] std::vector<double> recorded_force(const Series& series, const ReadingModel& reading,
                                                  const TrueForce& wire);
 
-/// Change of the recorded forces by changes of the true ones, to first order: columns [N] of one row a reading.
+/// Change of the recorded forces by changes of the true ones, to first order: columns [N] of one row a
+/// reading.
 [[nodiscard]] Eigen::MatrixXd recorded_change(const Series& series, const ReadingModel& reading,
                                               const TrueForce& wire, Eigen::MatrixXd change);
 

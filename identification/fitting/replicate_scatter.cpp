@@ -69,7 +69,8 @@ std::optional<Cells> cells_of(const std::vector<Series>& series, const std::vect
       readings = std::min(readings, legs[j][leg].end - legs[j][leg].begin);
     }
     if (!(to > from)) break;
-    // Half a spacing beyond what all have: the end readings of replicates lie that near to each other or are left out.
+    // Half a spacing beyond what all have: the end readings of replicates lie that near to each other or are
+    // left out.
     const double margin = 0.5 * (to - from) / static_cast<double>(std::max<std::size_t>(readings, 2) - 1);
     from -= margin;
     to += margin;
@@ -115,7 +116,8 @@ std::optional<Cells> cells_of(const std::vector<Series>& series, const std::vect
   return result;
 }
 
-/// Eigenvalues of one condition's smooth covariance against its independent one, and the deviations in their directions.
+/// Eigenvalues of one condition's smooth covariance against its independent one, and the deviations in their
+/// directions.
 struct Spectrum {
   Eigen::VectorXd values;
   Eigen::VectorXd squares;  // sums over the replicates
@@ -154,7 +156,8 @@ struct Candidate {
   double ratio = 0.0;                                     // of the smooth variance to it
 };
 
-// Of R replicates whose mean is free R - 1 independent draws of N(0, V) are left; the roughness is one more witness of w.
+// Of R replicates whose mean is free R - 1 independent draws of N(0, V) are left; the roughness is one more
+// witness of w.
 //   sum_c (R_c - 1) log|V_c| + tr(V_c^-1 S_c) + nu (log w + w_rough / w),  w in closed form for every ratio
 Candidate at_ratio(const std::vector<Spectrum>& spectra, const Roughness& roughness, double ratio) {
   double squares = roughness.dof * roughness.variance;

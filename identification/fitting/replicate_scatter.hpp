@@ -15,7 +15,8 @@ struct Roughness {
   double dof = 0.0;       ///< of it: 18 n / 35 for n readings, since its relative variance is 35 / (9 n)
 };
 
-/// sigma^2 = mean (r_{i-1} - 2 r_i + r_{i+1})^2 / 6 of residuals [N] over all series; zero where none has three readings.
+/// sigma^2 = mean (r_{i-1} - 2 r_i + r_{i+1})^2 / 6 of residuals [N] over all series; zero where none has
+/// three readings.
 [[nodiscard]] Roughness roughness_of(const std::vector<Eigen::VectorXd>& residuals);
 
 /// How replicates scatter about each other.                                              theory.md (I.3)
@@ -30,9 +31,10 @@ struct ReplicateScatter {
   [[nodiscard]] std::vector<double> heights(const Eigen::VectorXd& computed) const;
 };
 
-/// The scatter of the replicates among `series`, by restricted maximum likelihood: residuals are averaged over cells of
-/// the path that all replicates of a condition have, their mean over the replicates taken out whatever it is. None where
-/// no condition has two series with four cells in common. residuals, computed: one vector a series [N].
+/// The scatter of the replicates among `series`, by restricted maximum likelihood: residuals are averaged
+/// over cells of the path that all replicates of a condition have, their mean over the replicates taken out
+/// whatever it is. None where no condition has two series with four cells in common. residuals, computed: one
+/// vector a series [N].
 [[nodiscard]] std::optional<ReplicateScatter> replicate_scatter(const std::vector<Series>& series,
                                                                 const std::vector<Eigen::VectorXd>& residuals,
                                                                 const std::vector<Eigen::VectorXd>& computed,

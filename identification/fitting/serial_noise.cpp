@@ -74,7 +74,8 @@ SerialRows serial_rows(const Model& model, const Data& data, const Fit& fit) {
   return rows;
 }
 
-/// Whether sigma is known, and whether the likelihood is the restricted one, of the residual that no fitted number changes.
+/// Whether sigma is known, and whether the likelihood is the restricted one, of the residual that no fitted
+/// number changes.
 enum class SerialLikelihood { restricted, restricted_declared, whole };
 
 /// One point of the search.
@@ -83,8 +84,8 @@ struct GridPoint {
   double variance = 1.0;   // in units of sigma^2
 };
 
-// sigma free: (n - p) log s^2 + log|V| + log|J^T V^-1 J|; known: S + log|V| + log|J^T V^-1 J|, S = |P r|^2; the whole likelihood:
-// n log s^2 + log|V|.
+// sigma free: (n - p) log s^2 + log|V| + log|J^T V^-1 J|; known: S + log|V| + log|J^T V^-1 J|, S = |P r|^2;
+// the whole likelihood: n log s^2 + log|V|.
 GridPoint likelihood_at(const SerialRows& rows, double smooth, double length, SerialLikelihood likelihood) {
   Eigen::MatrixXd all(rows.readings, 1 + rows.numbers);
   double logarithms = 0.0;
@@ -131,7 +132,8 @@ BestOfGrid best_of_grid(const SerialRows& rows, SerialLikelihood likelihood) {
   return best;
 }
 
-/// Number of independent readings that determine a mean as well as `n` of this correlation: n over the sum of correlations.
+/// Number of independent readings that determine a mean as well as `n` of this correlation: n over the sum of
+/// correlations.
 double effective_readings(double n, double smooth, double length) {
   const double decay = std::exp(-1.0 / length);
   const double sum = 1.0 + 2.0 * smooth * decay / (1.0 - decay);

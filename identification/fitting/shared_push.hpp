@@ -7,9 +7,9 @@
 
 namespace snare::identification {
 
-/// Series whose curves are one and the same, as indices, every series in one group: dense records of a push in one
-/// direction on the same wire, read alike, which one solve serves. declared: as the file gives them, from which numbers
-/// count; applied, reading: with a model's settings, one a series.
+/// Series whose curves are one and the same, as indices, every series in one group: dense records of a push
+/// in one direction on the same wire, read alike, which one solve serves. declared: as the file gives them,
+/// from which numbers count; applied, reading: with a model's settings, one a series.
 [[nodiscard]] std::vector<std::vector<std::size_t>> shared_pushes(const std::vector<Series>& declared,
                                                                   const std::vector<Series>& applied,
                                                                   const std::vector<ReadingModel>& reading);

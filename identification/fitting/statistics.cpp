@@ -84,8 +84,8 @@ double fisher_tail(double x, double above, double below) {
 double noncentrality_upper(double x, double above, double below, double level) {
   if (!(x > 0.0)) return 0.0;
   const double share = 1.0 - level;
-  // Large ones by their normal limit: Boost's series are slow there. Noncentral F about 1 + l / above, its variance
-  // 2 (above + 2 l) / above^2 + 2 (1 + l / above)^2 / below.
+  // Large ones by their normal limit: Boost's series are slow there. Noncentral F about 1 + l / above, its
+  // variance 2 (above + 2 l) / above^2 + 2 (1 + l / above)^2 / below.
   constexpr double large = 3000.0;
   double low = 0.0;
   double high = above * x + 10.0;
@@ -105,7 +105,8 @@ double noncentrality_upper(double x, double above, double below, double level) {
 }
 
 double runs_p(const std::vector<Eigen::VectorXd>& residuals) {
-  // R runs among n1 positive and n2 negative entries: mean 1 + 2 n1 n2/n, variance (m - 1)(m - 2)/(n - 1), m the mean.
+  // R runs among n1 positive and n2 negative entries: mean 1 + 2 n1 n2/n, variance (m - 1)(m - 2)/(n - 1), m
+  // the mean.
   double excess = 0.0;
   double variance = 0.0;
   for (const Eigen::VectorXd& r : residuals) {

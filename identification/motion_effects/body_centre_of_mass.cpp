@@ -4,7 +4,8 @@
 
 namespace snare::identification {
 
-/// Centre of mass of a body, which stands at the origin of its frame where nothing is declared. Of a body that is placed in the file.
+/// Centre of mass of a body, which stands at the origin of its frame where nothing is declared. Of a body
+/// that is placed in the file.
 std::vector<RecordEffect> body_centre_of_mass_effects(const RecordModel& model) {
   constexpr double one_mm = 1.0, furthest = 1e4;  // [mm]
   std::vector<RecordEffect> effects;

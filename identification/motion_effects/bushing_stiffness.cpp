@@ -4,8 +4,9 @@ namespace snare::identification {
 
 namespace {
 
-/// What a bushing gives, 1/k in the unit of that: motions go with it nearly in proportion, also where it is declared as good as rigid and gives a
-/// thousand times more. In a record that declares the stiffness k otherwise it gives more by the same factor.
+/// What a bushing gives, 1/k in the unit of that: motions go with it nearly in proportion, also where it is
+/// declared as good as rigid and gives a thousand times more. In a record that declares the stiffness k
+/// otherwise it gives more by the same factor.
 RecordNumber compliance_of(const std::string& key, const std::string& name, const std::string& unit,
                            double stiffness) {
   const double null = 1.0 / stiffness;
@@ -22,7 +23,8 @@ RecordNumber compliance_of(const std::string& key, const std::string& name, cons
 
 }  // namespace
 
-/// Stiffness of a bushing, as an attachment that gives: (M.22). Turning and shifting for themselves, all axes by one factor.
+/// Stiffness of a bushing, as an attachment that gives: (M.22). Turning and shifting for themselves, all axes
+/// by one factor.
 std::vector<RecordEffect> bushing_stiffness_effects(const RecordModel& model) {
   struct Way {
     const char *key, *compliance, *unit;

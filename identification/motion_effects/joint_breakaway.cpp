@@ -2,8 +2,9 @@
 
 namespace snare::identification {
 
-/// Dry friction that is larger at rest and falls off with the speed: (A.11), T_s - T_c beside the dry friction that the model has. Where no speed
-/// is declared at which it has fallen off, a fifth of the rms along the first record.
+/// Dry friction that is larger at rest and falls off with the speed: (A.11), T_s - T_c beside the dry
+/// friction that the model has. Where no speed is declared at which it has fallen off, a fifth of the rms
+/// along the first record.
 std::vector<RecordEffect> joint_breakaway_effects(const RecordModel& model) {
   constexpr double share_of_rate = 0.2;
   std::vector<RecordEffect> effects;

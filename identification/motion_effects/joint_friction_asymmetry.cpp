@@ -2,7 +2,8 @@
 
 namespace snare::identification {
 
-/// Dry friction that is larger one way, or a torque that the drive gives unasked: (A.11), T_0. Constant against turning forward.
+/// Dry friction that is larger one way, or a torque that the drive gives unasked: (A.11), T_0. Constant
+/// against turning forward.
 std::vector<RecordEffect> joint_friction_asymmetry_effects(const RecordModel& model) {
   std::vector<RecordEffect> effects;
   for (const JointPlace& joint : joint_places(model)) {

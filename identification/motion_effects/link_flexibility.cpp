@@ -2,7 +2,8 @@
 
 namespace snare::identification {
 
-/// Bending of a link, in its first mode either way, about where its joint carries it: (A.19). It is tried at what a torque of that joint bends by 0.01 deg.
+/// Bending of a link, in its first mode either way, about where its joint carries it: (A.19). It is tried at
+/// what a torque of that joint bends by 0.01 deg.
 std::vector<RecordEffect> link_flexibility_effects(const RecordModel& model) {
   constexpr double small = 2e-4, most = 0.1;  // [rad]
   std::vector<RecordEffect> effects;

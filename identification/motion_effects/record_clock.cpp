@@ -2,7 +2,8 @@
 
 namespace snare::identification {
 
-/// Clock of the records: all that they tell is later, as with one delay of all sensors, (I.23). Where there is one sensor, its own delay is that.
+/// Clock of the records: all that they tell is later, as with one delay of all sensors, (I.23). Where there
+/// is one sensor, its own delay is that.
 std::vector<RecordEffect> record_clock_effects(const RecordModel& model) {
   const std::vector<ChannelPlace> channels = channel_places(model);
   if (channels.size() < 2) return {};

@@ -9,8 +9,9 @@
 
 namespace snare::identification {
 
-/// An effect that a declared scenario may lack, at one place of it. Every kind is one file, identification/motion_effects/<name>.cpp, which says
-/// what it is, where in a scenario it may sit, which numbers it has and how they enter: a key of the files, or a change of what a sensor tells.
+/// An effect that a declared scenario may lack, at one place of it. Every kind is one file,
+/// identification/motion_effects/<name>.cpp, which says what it is, where in a scenario it may sit, which
+/// numbers it has and how they enter: a key of the files, or a change of what a sensor tells.
 struct RecordEffect {
   std::string name{};
   std::string place{};                  ///< "drive::screw", a wire, a sensor; empty: the whole
@@ -34,28 +35,32 @@ struct JointPlace {
 /// Joints of arms, which have files; those of snares are not among them.
 [[nodiscard]] std::vector<JointPlace> joint_places(const RecordModel& model);
 
-/// A number that stands at `null` and is tried in steps of `scale`, both in the unit of its key. In a record that declares it otherwise it differs from that by as much.
+/// A number that stands at `null` and is tried in steps of `scale`, both in the unit of its key. In a record
+/// that declares it otherwise it differs from that by as much.
 [[nodiscard]] RecordNumber number_at(const std::string& key, double null, double scale);
 
-/// The effect of a declared number > 0 being another, for every element of a list of the scenario that declares it: `LIST[NAME].KEY`, plausible
-/// between a fifth and five times what is declared. In a record that declares it otherwise it is another by the same factor.
+/// The effect of a declared number > 0 being another, for every element of a list of the scenario that
+/// declares it: `LIST[NAME].KEY`, plausible between a fifth and five times what is declared. In a record that
+/// declares it otherwise it is another by the same factor.
 [[nodiscard]] std::vector<RecordEffect> other_number(const RecordModel& model, const std::string& list,
                                                      const std::string& key, const RecordEffect& what);
-/// The same of a number of every wire, those of snares among them: `wires[NAME].KEY`, `snares[NAME].wire.KEY`.
+/// The same of a number of every wire, those of snares among them: `wires[NAME].KEY`,
+/// `snares[NAME].wire.KEY`.
 [[nodiscard]] std::vector<RecordEffect> other_wire_number(const RecordModel& model, const std::string& key,
                                                           const RecordEffect& what);
 /// The same of a number of every joint's file.
 [[nodiscard]] std::vector<RecordEffect> other_joint_number(const RecordModel& model, const std::string& key,
                                                            const RecordEffect& what);
-/// The effect of a declared vector of three being another, tried in steps of `scale` (in the key's unit), for every body that declares it:
-/// `bodies[NAME].KEY`.
+/// The effect of a declared vector of three being another, tried in steps of `scale` (in the key's unit), for
+/// every body that declares it: `bodies[NAME].KEY`.
 [[nodiscard]] std::vector<RecordEffect> other_body_vector(const RecordModel& model, const std::string& key,
                                                           const RecordEffect& what, double scale);
 
 /// Whether the file fits this key, or one that holds it.
 [[nodiscard]] bool is_fitted(const RecordModel& model, const std::string& key);
 
-/// Every fitted channel once, for effects of sensors: its sensor's column and the rms of its readings less their mean.
+/// Every fitted channel once, for effects of sensors: its sensor's column and the rms of its readings less
+/// their mean.
 struct ChannelPlace {
   std::string column;
   /// rms in the unit of the column; between two readings, of the record [s]

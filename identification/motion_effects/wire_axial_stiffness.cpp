@@ -2,7 +2,8 @@
 
 namespace snare::identification {
 
-/// Stiffness of a wire against stretching, where it is declared; of a rod that stands for a wire that of its half.
+/// Stiffness of a wire against stretching, where it is declared; of a rod that stands for a wire that of its
+/// half.
 std::vector<RecordEffect> wire_axial_stiffness_effects(const RecordModel& model) {
   const RecordEffect what{.name = "wire_axial_stiffness",
                           .channel = "wire",

@@ -11,7 +11,8 @@ namespace {
 constexpr int steps = 20;   // of the function
 constexpr int blocks = 20;  // of the time, by turns to learn and to try
 
-/// Sums of a residual over the steps of an abscissa, learned in the one half of the blocks and tried in the other, both ways.
+/// Sums of a residual over the steps of an abscissa, learned in the one half of the blocks and tried in the
+/// other, both ways.
 struct Tally {
   double tried = 0.0, left = 0.0;  // squares
 };

@@ -23,7 +23,8 @@ constexpr double least_fall = 1e-4;    // share of the misfit below which a refi
 constexpr int enough_iterations = 12;  // to compare effects; the one that is named is fitted to the end
 constexpr double apart = 2.0;  // deviates by which the misfits of two refits must differ to be told apart
 
-/// The model with the numbers of an effect beside those that are fitted. From null the first step moves both as they belong together.
+/// The model with the numbers of an effect beside those that are fitted. From null the first step moves both
+/// as they belong together.
 RecordFit refit(const RoundInput& in, const RecordScore& score) {
   const RecordEffect& effect = in.effects[score.effect];
   const auto from = [&](const std::function<double(std::size_t)>& value, bool at_null) {
@@ -50,7 +51,8 @@ RecordFit refit(const RoundInput& in, const RecordScore& score) {
   return again.chi2 < fit.chi2 ? again : fit;
 }
 
-/// Effects that do the same to these records leave the same misfit but for the accuracy of the integration; then the order of the catalogue decides.
+/// Effects that do the same to these records leave the same misfit but for the accuracy of the integration;
+/// then the order of the catalogue decides.
 constexpr double the_same = 1e-4;
 
 /// Bayesian criterion of prewhitened residuals, up to what all models share.
@@ -74,8 +76,9 @@ struct Refit {
   [[nodiscard]] double misfit() const { return fit.chi2 + heldout.squaredNorm() + chance; }
 };
 
-/// Whether a refit is worse than the best beyond what noise does to the difference e of their residuals: the misfit of the worse is larger
-/// by |e|^2 + 2 e'r, of standard deviation 2 s, s = |Sigma^(1/2)' e|. Refits that are the same have e = 0 but for round-off.
+/// Whether a refit is worse than the best beyond what noise does to the difference e of their residuals: the
+/// misfit of the worse is larger by |e|^2 + 2 e'r, of standard deviation 2 s, s = |Sigma^(1/2)' e|. Refits
+/// that are the same have e = 0 but for round-off.
 bool is_worse(const Refit& best, const Refit& other, double s) {
   constexpr double round_off = 1e-9;
   return other.misfit() - best.misfit() > apart * 2.0 * s + round_off * best.misfit();
@@ -86,8 +89,9 @@ bool told_apart(const RecordData& data, const ColouredNoise& noise, const Refit&
   return is_worse(best, other, coloured(data, noise, other.fit.residual - best.fit.residual).norm());
 }
 
-/// Among refits that the fitted records do not tell apart (indices, the best first) the records held out choose, too: what both together
-/// do not tell apart, the best of both first. `of` are the effects' places in the catalogue, which decides between those that do the same.
+/// Among refits that the fitted records do not tell apart (indices, the best first) the records held out
+/// choose, too: what both together do not tell apart, the best of both first. `of` are the effects' places in
+/// the catalogue, which decides between those that do the same.
 std::vector<std::size_t> settle(const RoundInput& in, const ColouredNoise& noise, std::vector<Refit>& fits,
                                 const std::vector<std::size_t>& of, std::vector<std::size_t> members) {
   for (const std::size_t k : members) fits[k].heldout = in.heldout(fits[k].fit);

@@ -75,8 +75,8 @@ void try_sizes(const RecordModel& model, const RecordData& data, const RecordFit
   }
 }
 
-/// Derivatives by the fitted numbers but those that stand at a bound against which the readings push them: what such a number would take beyond it is
-/// there for effects to take.
+/// Derivatives by the fitted numbers but those that stand at a bound against which the readings push them:
+/// what such a number would take beyond it is there for effects to take.
 Eigen::MatrixXd free_to_move(const RecordFit& fit) {
   std::vector<Eigen::Index> moving;
   for (Eigen::Index k = 0; k < fit.jacobian.cols(); ++k) {
@@ -89,8 +89,9 @@ Eigen::MatrixXd free_to_move(const RecordFit& fit) {
   return fit.jacobian(Eigen::all, moving);
 }
 
-/// Columns with the fitted ones out, of the numbers that do what neither these nor the numbers before them do. Of a vector the components that
-/// change the records a hundred times less than another one are left out: at sizes that show them the motion is another.
+/// Columns with the fitted ones out, of the numbers that do what neither these nor the numbers before them
+/// do. Of a vector the components that change the records a hundred times less than another one are left out:
+/// at sizes that show them the motion is another.
 void keep_independent(const Projection& projection, const std::vector<const Trial*>& seen,
                       RecordScore& score) {
   constexpr double absorbed = 1e-3;  // of the change: below it others do the same
@@ -119,8 +120,9 @@ void keep_independent(const Projection& projection, const std::vector<const Tria
 }
 
 /// The score of one effect from its columns with the fitted ones out, and their coloured counterparts.
-/// power: variance of what is left with all columns out. What smooth columns take out is missing there, and an autoregression of the rest takes
-/// the noise for smaller where they are: no score has less than the variance that white noise of that power would give it.
+/// power: variance of what is left with all columns out. What smooth columns take out is missing there, and
+/// an autoregression of the rest takes the noise for smaller where they are: no score has less than the
+/// variance that white noise of that power would give it.
 void judge(const RecordData& data, const ColouredNoise& noise, double power, const Eigen::VectorXd& residual,
            const RecordEffect& effect, RecordScore& score) {
   const Eigen::MatrixXd& g = score.columns;

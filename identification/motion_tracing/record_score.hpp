@@ -10,7 +10,7 @@
 
 namespace snare::identification {
 
-/// Score test of one effect beside a fitted scenario.                                              theory.md (I.22)
+/// Score test of one effect beside a fitted scenario.                                        theory.md (I.22)
 struct RecordScore {
   std::size_t effect = 0;    ///< index in the list
   std::string unobservable;  ///< why the records cannot show it; empty: they can
@@ -36,8 +36,8 @@ struct RecordScores {
       noise;  ///< of what is left when all columns at once are taken out: of that no effect is a part
 };
 
-/// Tests of all effects at a level `significance` (for what would be detected). The size of the trial follows from what it changes:
-/// between a fiftieth of the residual and as much as it.
+/// Tests of all effects at a level `significance` (for what would be detected). The size of the trial follows
+/// from what it changes: between a fiftieth of the residual and as much as it.
 [[nodiscard]] RecordScores score_motion(const RecordModel& model, const RecordData& data,
                                         const RecordFit& fit, const std::vector<RecordSetting>& fixed,
                                         const std::vector<RecordEffect>& effects, double significance);

@@ -105,8 +105,8 @@ TracedNumber number_of(const RecordModel& model, const RecordFit& fit, std::size
   return n;
 }
 
-/// The null directions of a fit whose rank was asked. Numbers with the sign of their declared value scale; places shift, where they
-/// may change theirs.
+/// The null directions of a fit whose rank was asked. Numbers with the sign of their declared value scale;
+/// places shift, where they may change theirs.
 std::vector<OpenNumbers> open_numbers(const RecordModel& model, const RecordFit& fit) {
   std::vector<OpenNumbers> open;
   for (const NullDirection& direction : fit.rank.directions) {

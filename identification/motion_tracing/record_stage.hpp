@@ -13,8 +13,9 @@ inline constexpr double half_width_95 = 1.96;
 [[nodiscard]] RecordStage record_stage(const RecordModel& model, const RecordData& data, const RecordFit& fit,
                                        const RecordFit* heldout, const RecordData& heldout_data);
 
-/// Standard deviation of one reading of a channel, in its unit: declared; else of its white part, the median of |y_(i-1) - 2 y_i + y_(i+1)| over
-/// 0.674 sqrt(6), which smooth motions hardly enter and jumps, as of a drive that turns round, not at all. Where the median is zero, the mean square.
+/// Standard deviation of one reading of a channel, in its unit: declared; else of its white part, the median
+/// of |y_(i-1) - 2 y_i + y_(i+1)| over 0.674 sqrt(6), which smooth motions hardly enter and jumps, as of a
+/// drive that turns round, not at all. Where the median is zero, the mean square.
 [[nodiscard]] double reading_sigma(const RecordSet& set, const std::string& sensor);
 
 /// Numbers of a fit with their intervals.

@@ -19,7 +19,8 @@ namespace snare::identification {
 struct TracedNumber {
   std::string key, unit;
   double value = 0.0, stderr_ = 0.0;
-  /// 95 %, of correlated residuals; absent where the records do not show it, and at the bound on which the number stands.
+  /// 95 %, of correlated residuals; absent where the records do not show it, and at the bound on which the
+  /// number stands.
   std::optional<double> lower, upper;
   AtBound bound = AtBound::none;  ///< on which it stands
   bool identified = true;  ///< the records change with it, and no null direction moves it: theory.md (I.32)

@@ -170,7 +170,8 @@ class Tracer {
     return std::move(trace_);
   }
 
-  /// Least squares with the channels weighed by what they leave, where their noise is not declared and there are several.
+  /// Least squares with the channels weighed by what they leave, where their noise is not declared and there
+  /// are several.
   RecordFit base_fit() {
     RecordFitOptions options;
     options.method = set_.method;
@@ -268,7 +269,8 @@ class Tracer {
     std::vector<Eigen::VectorXd> pieces;
     for (const ResidualPiece& p : data_.pieces) pieces.emplace_back(residual.segment(p.begin, p.size));
     const double l = ljung_box_p(pieces, 10), r = runs_p(pieces);
-    // Each channel by itself, the numbers shared out by its readings; of several the smallest p counts as often as there are channels.
+    // Each channel by itself, the numbers shared out by its readings; of several the smallest p counts as
+    // often as there are channels.
     const double shared = static_cast<double>(s.numbers.size()) / static_cast<double>(residual.size());
     const std::map<std::string, ChannelMisfit> channels = misfits(s, residual);
     double f = 1.0;
@@ -340,9 +342,10 @@ class Tracer {
     Eigen::VectorXd heldout;  // residual of the records held out
     std::size_t effects = 0;  // that are in it
   };
-  /// Effects may carry over to the held-out records only together, as a loss that grows and one that does not. So they are asked at the end: of the
-  /// models along the way the one that predicts the held-out records best stays, and what was added behind it goes where it makes the prediction
-  /// worse by more than half a standard deviation: what these records hardly show they cannot take back.
+  /// Effects may carry over to the held-out records only together, as a loss that grows and one that does
+  /// not. So they are asked at the end: of the models along the way the one that predicts the held-out
+  /// records best stays, and what was added behind it goes where it makes the prediction worse by more than
+  /// half a standard deviation: what these records hardly show they cannot take back.
   void keep_what_carries_over(std::vector<Reached>& kept) {
     if (heldout_data_.rows == 0 || kept.size() < 2 || stop_) return;  // what is only watched does not choose
     std::erase_if(kept, [](const Reached& k) { return k.heldout.size() == 0; });  // no motion with it
@@ -378,8 +381,9 @@ class Tracer {
     trace_.rounds[round].added.clear();
   }
 
-  /// Effects that were named before the last one and are no longer needed beside it: what imitated in part what was missing. Such an effect has
-  /// numbers that are null within their errors, and without it the misfit grows by less than log n times what chance takes a number.
+  /// Effects that were named before the last one and are no longer needed beside it: what imitated in part
+  /// what was missing. Such an effect has numbers that are null within their errors, and without it the
+  /// misfit grows by less than log n times what chance takes a number.
   bool drop_needless() {
     bool dropped = false;
     for (std::size_t e = 0; e + 1 < trace_.selected_effects.size() && !stop_;) {
@@ -491,7 +495,8 @@ class Tracer {
     propose();
   }
 
-  /// Nothing is named that leaves more than a little: what helped is told, and the model is again that without it.
+  /// Nothing is named that leaves more than a little: what helped is told, and the model is again that
+  /// without it.
   void withdraw(const Reached& base) {
     if (!trace_.selected.empty()) {
       trace_.partial = std::move(trace_.selected);
@@ -515,7 +520,8 @@ class Tracer {
       trace_.kind = leaves_little() ? VerdictKind::partly_explained : VerdictKind::not_explained;
   }
 
-  /// Whether little of the error is left, of all channels together and of each by itself: one that is followed well cannot hide another.
+  /// Whether little of the error is left, of all channels together and of each by itself: one that is
+  /// followed well cannot hide another.
   [[nodiscard]] bool leaves_little() const {
     if (trace_.share_left > most_share_left) return false;
     for (std::size_t k = 0; k < trace_.final.errors.size(); ++k) {
@@ -527,7 +533,8 @@ class Tracer {
     return true;
   }
 
-  /// What to measure next: what settles the members of the class of the effect that was named last among those that are not alone.
+  /// What to measure next: what settles the members of the class of the effect that was named last among
+  /// those that are not alone.
   void propose() {
     for (const RecordRound& round : trace_.rounds) {
       if (round.added.empty() || round.classes.empty()) continue;

@@ -16,7 +16,7 @@ struct RecordTraceOptions {
   std::function<void(const RecordTrace& part)> reached = {};    ///< whenever more of it is whole
 };
 
-/// Closes the loop of a scenario and its records.                                        theory.md (I.20)-(I.24)
+/// Closes the loop of a scenario and its records.                                     theory.md (I.20)-(I.24)
 /// Throws base::InputError for records that cannot be compared with the scenario.
 [[nodiscard]] RecordTrace trace_records(const RecordSet& set, const RecordTraceOptions& options = {});
 

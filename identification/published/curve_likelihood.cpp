@@ -17,7 +17,8 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-/// Recorded forces of a zero: the coefficients of their parabola, how they change with the zero if that is asked for, and the part off it.
+/// Recorded forces of a zero: the coefficients of their parabola, how they change with the zero if that is
+/// asked for, and the part off it.
 struct AtZero {
   Vector3d coefficients, change;
   double off = 0.0;  ///< q [N^2]
@@ -92,7 +93,8 @@ double zero_anywhere(const FitCell& cell, const TouchCurve& curve) {
   return 0.5 * (a + b);
 }
 
-/// Coefficients and part off the parabola about a zero: quadratic in it within `half` either way, where the curve is computed there.
+/// Coefficients and part off the parabola about a zero: quadratic in it within `half` either way, where the
+/// curve is computed there.
 class NearZero {
  public:
   NearZero(const FitCell& cell, const TouchCurve& curve, double zero, double half)
@@ -143,7 +145,8 @@ Eigen::ArrayXd most_likelihoods(const FitCell& cell, const TouchCurve& curve, do
 
 namespace {
 
-/// Nodes and logarithms of weights for integrals over a standard normal variable: Gauss and Hermite's rule of five points.
+/// Nodes and logarithms of weights for integrals over a standard normal variable: Gauss and Hermite's rule of
+/// five points.
 struct NormalRule {
   std::array<double, 5> at, log_weight;
 };
@@ -156,8 +159,8 @@ NormalRule normal_rule() {
 
 }  // namespace
 
-// The integrand is nearly normal about the best zero, with the width sigma / |d(Q^T F)/dz|. Where the ends of the zeros or of the curve are
-// near, a trapezoidal rule a width wide takes the place of Gauss and Hermite's.
+// The integrand is nearly normal about the best zero, with the width sigma / |d(Q^T F)/dz|. Where the ends of
+// the zeros or of the curve are near, a trapezoidal rule a width wide takes the place of Gauss and Hermite's.
 Eigen::ArrayXd log_likelihoods(const FitCell& cell, const TouchCurve& curve, double zero,
                                const Eigen::ArrayXd& log_sigma) {
   Eigen::ArrayXd result = Eigen::ArrayXd::Constant(log_sigma.size(), impossible);

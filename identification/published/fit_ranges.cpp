@@ -9,7 +9,8 @@ namespace snare::identification {
 
 namespace {
 
-/// Height over the chord to which a point of an inextensible wire can be pushed [m]: an ellipse about the mounts.
+/// Height over the chord to which a point of an inextensible wire can be pushed [m]: an ellipse about the
+/// mounts.
 double taut_height(const coupling::PushProblem& test) {
   const double a = 0.5 * test.wire.length, c = 0.5 * test.mount.span, x = test.contact_position - c;
   return std::sqrt(std::max(0.0, (a * a - c * c) * (1.0 - x * x / (a * a))));

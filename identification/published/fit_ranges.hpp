@@ -42,7 +42,7 @@ struct FitCells {
   }
 };
 
-/// Ranges and numbers of readings that are looked at, and the published fits under each.            theory.md (I.33)
+/// Ranges and numbers of readings that are looked at, and the published fits under each.     theory.md (I.33)
 class FitRanges {
  public:
   struct Options {
@@ -74,8 +74,9 @@ class FitRanges {
   [[nodiscard]] FitCells at(const std::vector<double>& to, std::size_t readings) const;
   /// The longest range [m].
   [[nodiscard]] double longest() const;
-  /// Prior mass of a range with one of the numbers of readings; all sum to 1. Numbers of readings share evenly. Half is of fits that end
-  /// where the wire is taut, the rest of common ranges: even in their logarithm or, uniform, in themselves.
+  /// Prior mass of a range with one of the numbers of readings; all sum to 1. Numbers of readings share
+  /// evenly. Half is of fits that end where the wire is taut, the rest of common ranges: even in their
+  /// logarithm or, uniform, in themselves.
   [[nodiscard]] double mass(std::size_t range, bool uniform) const;
 
  private:

@@ -62,7 +62,8 @@ double ImportanceSampler::Student::log_density(const VectorXd& u) const {
          0.5 * (freedom + n) * std::log1p(square / freedom);
 }
 
-// Mean and scale of the weighted points. A power of the weights below one keeps several of them alive at first.
+// Mean and scale of the weighted points. A power of the weights below one keeps several of them alive at
+// first.
 ImportanceSampler::Student ImportanceSampler::proposal() const {
   std::vector<double> log(values_.size());
   for (std::size_t s = 0; s < log.size(); ++s) log[s] = points_.log_weight[s] + values_[s];

@@ -14,9 +14,10 @@ struct WeightedPoints {
   std::vector<double> log_weight;  ///< [-]
 };
 
-/// Adaptive multiple importance sampling (Cornuet, Marin, Mira and Robert 2012): a first batch fills the cube evenly, every other one
-/// is drawn from Student's t of four degrees of freedom about the integrand as all points so far show it; all points count with the
-/// mixture of all proposals. The same bits for the same input.
+/// Adaptive multiple importance sampling (Cornuet, Marin, Mira and Robert 2012): a first batch fills the cube
+/// evenly, every other one is drawn from Student's t of four degrees of freedom about the integrand as all
+/// points so far show it; all points count with the mixture of all proposals. The same bits for the same
+/// input.
 class ImportanceSampler {
  public:
   /// Of a batch of points, one value each, minus infinity where the integrand vanishes.
@@ -30,7 +31,8 @@ class ImportanceSampler {
   [[nodiscard]] const WeightedPoints& points() const { return points_; }
   /// log of the integral [-].
   [[nodiscard]] double log_integral() const;
-  /// Number of points that count, (sum w f)^2 / sum (w f)^2 [-]: the integral is known to one part in its root. Infinite without a dimension.
+  /// Number of points that count, (sum w f)^2 / sum (w f)^2 [-]: the integral is known to one part in its
+  /// root. Infinite without a dimension.
   [[nodiscard]] double effective() const;
 
  private:

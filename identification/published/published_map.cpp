@@ -51,7 +51,8 @@ double value_at(const PriorNumber& n, double u) {
   return n.logarithmic ? n.lower * std::pow(n.upper / n.lower, u) : n.lower + (n.upper - n.lower) * u;
 }
 
-/// The largest log p over ranges and numbers of readings if every published parabola were exact, with a scatter of its own.
+/// The largest log p over ranges and numbers of readings if every published parabola were exact, with a
+/// scatter of its own.
 double of_parabolas(const FitRanges& ranges) {
   double best = impossible;
   for (const std::vector<FitCells>& some : {ranges.edges(), ranges.taut()}) {

@@ -17,7 +17,8 @@ struct PriorNumber {
   bool logarithmic = false;
 };
 
-/// How published fits may have come about: the declared test with further effects. A zero of the travel a series is part of each.
+/// How published fits may have come about: the declared test with further effects. A zero of the travel a
+/// series is part of each.
 struct Hypothesis {
   std::string name;     ///< "mount_axial_compliance"
   std::string meaning;  ///< "the mounts give way along the wire"
@@ -26,7 +27,8 @@ struct Hypothesis {
   std::vector<PriorNumber> numbers;
   void (*change)(coupling::PushProblem&) = nullptr;  ///< of the declared test, or null
 };
-/// The declared test; with each effect of the catalogue that published fits can show; with pairs of them; the rope; pinned ends; the inward push.
+/// The declared test; with each effect of the catalogue that published fits can show; with pairs of them; the
+/// rope; pinned ends; the inward push.
 [[nodiscard]] std::vector<Hypothesis> published_hypotheses();
 
 /// What a hypothesis makes of the published fits at one range and number of readings.
@@ -60,7 +62,8 @@ struct MapOptions {
   FitRanges::Options ranges;
   int elements = 64;                        ///< of the computed wire
   int first = 24, batch = 16, batches = 4;  ///< computed tests a number, see ImportanceSampler
-  /// Hypotheses within e^-12 of the leading one are sampled until so many computed tests count, up to most_batches.
+  /// Hypotheses within e^-12 of the leading one are sampled until so many computed tests count, up to
+  /// most_batches.
   double effective = 100.0;
   int most_batches = 40;
   std::function<bool(const std::string& stage)> progress = {};
@@ -69,7 +72,7 @@ struct MapOptions {
 /// A map within a minute of one core, for fits that no map is stored of.
 [[nodiscard]] MapOptions coarse_map();
 
-/// The evidence of every hypothesis over range and number of readings.                                      theory.md (I.33)
+/// The evidence of every hypothesis over range and number of readings.                       theory.md (I.33)
 [[nodiscard]] std::vector<HypothesisMap> published_map(const Experiment& experiment, const FitRanges& ranges,
                                                        const std::vector<Hypothesis>& hypotheses,
                                                        const MapOptions& options);
@@ -80,9 +83,10 @@ inline constexpr const char* along_the_wire = "along_the_wire";
 [[nodiscard]] double more_compliance(const Experiment& experiment, const Hypothesis& hypothesis,
                                      const std::vector<double>& values);
 
-/// P [-] that published fits which this hypothesis made, at its leading range and number of readings, are as far from it as these: by a
-/// parametric bootstrap of T = max log p(numbers | hypothesis) - max log p(numbers | parabolas, a scatter each), both over ranges and numbers
-/// of readings, the former also over `likely` numbers of the test. A multiple of 1 / (replicates + 1).
+/// P [-] that published fits which this hypothesis made, at its leading range and number of readings, are as
+/// far from it as these: by a parametric bootstrap of T = max log p(numbers | hypothesis) - max log p(numbers
+/// | parabolas, a scatter each), both over ranges and numbers of readings, the former also over `likely`
+/// numbers of the test. A multiple of 1 / (replicates + 1).
 [[nodiscard]] double published_p(const Experiment& experiment, const FitRanges& ranges,
                                  const HypothesisMap& map, const MapOptions& options, int replicates);
 

@@ -57,7 +57,8 @@ std::vector<double> CommonRanges::by_readings(const FitCells& cells) const {
   return result;
 }
 
-/// Index of the interval (i, i + 1) that is to be halved next: next to the best node until p hardly changes, and wherever p matters.
+/// Index of the interval (i, i + 1) that is to be halved next: next to the best node until p hardly changes,
+/// and wherever p matters.
 std::optional<std::size_t> next_to_halve(const std::vector<Node>& nodes, double matters) {
   constexpr double next_to_best = 0.5, anywhere = 1.0, narrow = 1e-4, far = 1e3;
   const auto best = static_cast<std::size_t>(

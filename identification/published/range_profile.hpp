@@ -10,23 +10,25 @@ struct ByScatter {
   Eigen::ArrayXd log;        ///< [-]
   double most = 0.0;         ///< the largest that `log` can be
 };
-/// zeros: of the travel [m], one a series, replaced; the ones given are estimates. What is below `floor` is not computed: impossible.
+/// zeros: of the travel [m], one a series, replaced; the ones given are estimates. What is below `floor` is
+/// not computed: impossible.
 [[nodiscard]] ByScatter by_scatter(const FitCells& cells, std::size_t readings,
                                    const std::vector<TouchCurve>& curves,
                                    std::vector<std::optional<double>>& zeros, double floor);
 
-/// What computed curves make of published fits over all ranges, zeros and scatter (even in its logarithm, Jeffreys) integrated out.
+/// What computed curves make of published fits over all ranges, zeros and scatter (even in its logarithm,
+/// Jeffreys) integrated out.
 struct RangeProfile {
-  std::vector<double>
-      log;  ///< log p, by range and number of readings; of a bin the mean over it, even in the logarithm of the range
+  /// log p, by range and number of readings; of a bin the mean over it, even in the logarithm of the range
+  std::vector<double> log;
   std::vector<double>
       best_to;  ///< of a bin, likewise: the range in it with the largest p [m]; 0 where nothing is possible
   double largest = impossible;  ///< of p over all ranges and numbers of readings
 };
 
-/// The profile of curves, one a series; none (no curves): all is impossible. Bins are divided where p changes by more than a factor e
-/// and matters: fits that rest on many readings know their range to a few parts in a thousand. Below `floor` log p stands for what it is
-/// at most.
+/// The profile of curves, one a series; none (no curves): all is impossible. Bins are divided where p changes
+/// by more than a factor e and matters: fits that rest on many readings know their range to a few parts in a
+/// thousand. Below `floor` log p stands for what it is at most.
 [[nodiscard]] RangeProfile range_profile(const FitRanges& ranges, const std::vector<TouchCurve>& curves,
                                          double floor);
 

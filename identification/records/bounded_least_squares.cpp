@@ -22,8 +22,11 @@ constexpr double next_to_minimum =
 constexpr int small_falls_to_end = 2;  // one alone may be a step that was held back
 constexpr double poor_fall = 0.5;  // of what was promised: the derivatives are no longer those of this place
 
-/// Broyden's correction, row by row: the least change, in columns over their norms, with which J tells what the step has shown. What is nought stays
-/// so: a reading that does not hang on a number. A row is left as it is where hardly anything moved on which it hangs.      theory.md (I.28)
+/// Broyden's correction, row by row: the least change, in columns over their norms, with which J tells what
+/// the step has shown. What is nought stays
+/// so: a reading that does not hang on a number. A row is left as it is where hardly anything moved on which
+/// it hangs.
+///                                                                                           theory.md (I.28)
 void correct(Eigen::MatrixXd& J, const Eigen::VectorXd& step, const Eigen::VectorXd& change) {
   constexpr double hardly = 1e-4;
   const Eigen::VectorXd weighed = J.colwise().squaredNorm().transpose().cwiseProduct(step);
@@ -39,7 +42,8 @@ void correct(Eigen::MatrixXd& J, const Eigen::VectorXd& step, const Eigen::Vecto
   }
 }
 
-/// Step that lowers |r + J s|^2 + mu |D s|^2 with s on the bounds where it would cross them; `held` numbers do not move.
+/// Step that lowers |r + J s|^2 + mu |D s|^2 with s on the bounds where it would cross them; `held` numbers
+/// do not move.
 Eigen::VectorXd step_within(const BoundedProblem& problem, const Eigen::VectorXd& x, const Eigen::VectorXd& r,
                             const Eigen::MatrixXd& J, const std::vector<bool>& held, double damping) {
   const Eigen::Index n = x.size();
@@ -110,7 +114,8 @@ BoundedResult bounded_least_squares(const BoundedProblem& problem, const Eigen::
     for (Eigen::Index k = 0; k < slope.size(); ++k)
       held.push_back((result.x[k] <= problem.lower[k] && slope[k] >= 0.0) ||
                      (result.x[k] >= problem.upper[k] && slope[k] <= 0.0) || !(J.col(k).norm() > 0.0));
-    // What a whole step promises: at a minimum no simulation is spent on falls that are below those that end the search.
+    // What a whole step promises: at a minimum no simulation is spent on falls that are below those that end
+    // the search.
     const Eigen::VectorXd whole = step_within(problem, result.x, r, J, held, least_damping);
     const double whole_fall = result.chi2 - (r + J * whole).squaredNorm();
     if (whole_fall <= tolerance * result.chi2) {

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int highest_order = 30;
 
-/// Burg's recursion over several stretches of one process: at every order the reflection that makes the forward and backward errors of
-/// all of them least. It is always stable.
+/// Burg's recursion over several stretches of one process: at every order the reflection that makes the
+/// forward and backward errors of all of them least. It is always stable.
 Autoregression burg(const std::vector<Eigen::VectorXd>& stretches) {
   double count = 0.0, power = 0.0;
   for (const Eigen::VectorXd& s : stretches) {

@@ -15,10 +15,12 @@ struct DeclaredScenario {
   base::TomlNode scenario;
   std::map<std::string, base::TomlNode> arms;  ///< files of the arms, by their names
 
-  /// The number, in its key's unit, under a key such as `bodies[visitor].mass_kg`, `arms[a].angles_deg[2]` or `arms[a].joint.J1.coulomb_Nm` (of the
-  /// joint's own table, else of `every_joint`); nothing where there is none.
+  /// The number, in its key's unit, under a key such as `bodies[visitor].mass_kg`, `arms[a].angles_deg[2]` or
+  /// `arms[a].joint.J1.coulomb_Nm` (of the joint's own table, else of `every_joint`); nothing where there is
+  /// none.
   [[nodiscard]] std::optional<double> number(const std::string& key) const;
-  /// The key of `every_joint` from which a joint's key takes its number where the joint has none of its own; else the key itself.
+  /// The key of `every_joint` from which a joint's key takes its number where the joint has none of its own;
+  /// else the key itself.
   [[nodiscard]] std::string key_of(const std::string& key) const;
   /// Likewise of a text.
   [[nodiscard]] std::optional<std::string> text(const std::string& key) const;
@@ -34,7 +36,8 @@ struct StandingNumbers {
   const DeclaredScenario& declared;
   const std::vector<base::Override>& set;  ///< the last one of a key counts
 
-  /// The number, in its key's unit, as it is set, else as it is declared. One of a joint that has none of its own is that of `every_joint`.
+  /// The number, in its key's unit, as it is set, else as it is declared. One of a joint that has none of its
+  /// own is that of `every_joint`.
   [[nodiscard]] std::optional<double> number(const std::string& key) const;
 };
 

@@ -9,7 +9,8 @@ namespace snare::identification {
 
 namespace {
 
-/// A section of the second order, y = H u, by the bilinear transform of 1/(1 + s/Q + s^2) with K = tan(pi f_c dt); gain 1 at rest.
+/// A section of the second order, y = H u, by the bilinear transform of 1/(1 + s/Q + s^2) with K = tan(pi f_c
+/// dt); gain 1 at rest.
 struct Section {
   double b0, b1, b2, a1, a2;
 

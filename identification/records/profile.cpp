@@ -23,8 +23,8 @@ bool at_bound(const RecordSetting& s) {
   return s.value <= s.number.lower || s.value >= s.number.upper;
 }
 
-/// Variance by noise of the fall of the sum of squares that one number brings: with g the column, those of the others taken out,
-/// g' Sigma g / g' g. theory.md (I.27)
+/// Variance by noise of the fall of the sum of squares that one number brings: with g the column, those of
+/// the others taken out, g' Sigma g / g' g. theory.md (I.27)
 double rise_unit(const RecordData& data, const RecordFit& fit, Eigen::Index number) {
   std::vector<Eigen::Index> others;
   for (Eigen::Index k = 0; k < fit.jacobian.cols(); ++k)
@@ -107,7 +107,8 @@ class Side {
   double fall = 0.0;
 
  private:
-  /// Root of the rise where the number is held, the others fitted anew; nothing where that cannot be simulated.
+  /// Root of the rise where the number is held, the others fitted anew; nothing where that cannot be
+  /// simulated.
   std::optional<double> deviate_at(double value) {
     options_.fixed.back().value = value;
     const RecordFit there = fit_motion(model_, data_, others_, options_);

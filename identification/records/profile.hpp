@@ -32,7 +32,7 @@ struct ProfileSide {
   ProfileEnd end = ProfileEnd::open;
 };
 
-/// Profile likelihood of one fitted number.                                                    theory.md (I.27)
+/// Profile likelihood of one fitted number.                                                  theory.md (I.27)
 struct Profile {
   std::string key, unit;
   double value = 0.0;  ///< of the fit, in the unit of the key
@@ -46,9 +46,10 @@ struct Profile {
 /// Rise at which 95 % are reached, of one degree of freedom.
 inline constexpr double profile_rise_95 = 3.841458820694124;
 
-/// Along one number of a fit, outward to both sides: it is held and all others are fitted anew, from where they were at the point before. The
-/// rise is told in units of g' Sigma g / g' g, the variance that residuals that hang together give it (g: the number's column, those of the others
-/// taken out). In a linear model the interval is that of the covariance. number: index in fit.settings. The fit must have its jacobian.
+/// Along one number of a fit, outward to both sides: it is held and all others are fitted anew, from where
+/// they were at the point before. The rise is told in units of g' Sigma g / g' g, the variance that residuals
+/// that hang together give it (g: the number's column, those of the others taken out). In a linear model the
+/// interval is that of the covariance. number: index in fit.settings. The fit must have its jacobian.
 [[nodiscard]] Profile profile_of(const RecordModel& model, const RecordData& data, const RecordFit& fit,
                                  std::size_t number, const RecordFitOptions& options = {});
 

@@ -37,7 +37,8 @@ std::pair<std::size_t, std::size_t> longest_run(const std::vector<double>& value
   return {first, longest};
 }
 
-/// Smallest difference of two readings, but for rounding: the step of an encoder, or the last digit of the file.
+/// Smallest difference of two readings, but for rounding: the step of an encoder, or the last digit of the
+/// file.
 double resolution(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const double rounding = 1e-9 * (values.back() - values.front());
@@ -47,8 +48,9 @@ double resolution(std::vector<double> values) {
   return least;
 }
 
-/// How far a signal would have gone beyond a run of the same readings, had it gone on as it came and as it left: a parabola with both slopes,
-/// or at the end of the record with the first. 0 for a run at the start, where a system is at rest.
+/// How far a signal would have gone beyond a run of the same readings, had it gone on as it came and as it
+/// left: a parabola with both slopes, or at the end of the record with the first. 0 for a run at the start,
+/// where a system is at rest.
 double beyond(const std::vector<double>& values, std::size_t first, std::size_t count) {
   constexpr std::size_t few = 3;  // readings, for a slope
   if (first < few) return 0.0;

@@ -34,9 +34,10 @@ struct RecordReadings {
   RecordFilter filter;
 };
 
-/// Reads it. Throws InputError with everything that is wrong (at most a few of each kind): columns that are missing, cells that are no
-/// number, times that stand still or go back, gaps, times before the scenario begins; fewer than `fewest_readings`; columns that are
-/// constant, or stand at their largest or smallest value most of the time.
+/// Reads it. Throws InputError with everything that is wrong (at most a few of each kind): columns that are
+/// missing, cells that are no number, times that stand still or go back, gaps, times before the scenario
+/// begins; fewer than `fewest_readings`; columns that are constant, or stand at their largest or smallest
+/// value most of the time.
 [[nodiscard]] RecordReadings read_record_csv(const RecordCsv& csv);
 
 inline constexpr std::size_t fewest_readings = 20;

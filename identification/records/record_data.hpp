@@ -42,10 +42,12 @@ struct RecordData {
 [[nodiscard]] RecordData record_data(const RecordSet& set, const std::vector<std::size_t>& records,
                                      const ChannelScales& scales);
 
-/// The same with the first readings of every piece only, a share > 0 of them [-]; nothing where a piece has fewer than `fewest` of them.
+/// The same with the first readings of every piece only, a share > 0 of them [-]; nothing where a piece has
+/// fewer than `fewest` of them.
 [[nodiscard]] std::optional<RecordData> beginnings(const RecordData& data, double share, Eigen::Index fewest);
 
-/// Root mean square of every channel over its records, less its mean: scales to begin with. Declared ones stay.
+/// Root mean square of every channel over its records, less its mean: scales to begin with. Declared ones
+/// stay.
 [[nodiscard]] ChannelScales first_scales(const RecordSet& set, const std::vector<std::size_t>& records);
 
 /// What a fit of records has found; usable or not says its report.

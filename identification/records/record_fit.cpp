@@ -15,15 +15,18 @@ namespace {
 
 constexpr double step_share = 0.1;  ///< of a number's scale: the step of the differences
 
-/// Step of the differences by a number. For central ones a number that has grown far beyond its declared value is moved in
-/// proportion: a smaller step would show the errors of the integration alone. Forward ones would be off by the longer step.
+/// Step of the differences by a number. For central ones a number that has grown far beyond its declared
+/// value is moved in
+/// proportion: a smaller step would show the errors of the integration alone. Forward ones would be off by
+/// the longer step.
 double step_of(const RecordSetting& s, Differences differences) {
   const bool follows = s.number.scale_follows && differences == Differences::central;
   return step_share * (follows ? std::max(s.number.scale, 0.01 * std::abs(s.value)) : s.number.scale);
 }
 
-/// Takes derivatives by numbers that hardly act again, with a long step: a short one shows the errors of the integration. The column of
-/// a number that does not act with a long step either becomes zero, and the number stays where it is.
+/// Takes derivatives by numbers that hardly act again, with a long step: a short one shows the errors of the
+/// integration. The column of a number that does not act with a long step either becomes zero, and the number
+/// stays where it is.
 void retake_weak_columns(const RecordModel& model, const RecordData& data,
                          const std::vector<RecordSetting>& settings,
                          const std::vector<RecordPrediction>& base, const std::vector<RecordSetting>& fixed,
@@ -109,7 +112,8 @@ struct Beside {
   Eigen::VectorXd below, above;  // signals there; empty: none
 };
 
-/// Signals beside `settings` for the numbers of which a step is asked; a step that nothing can be simulated at has none.
+/// Signals beside `settings` for the numbers of which a step is asked; a step that nothing can be simulated
+/// at has none.
 void take_steps(const RecordModel& model, const RecordData& data, const std::vector<RecordSetting>& settings,
                 const std::vector<RecordPrediction>& base, const std::vector<RecordSetting>& fixed,
                 std::vector<Beside>& beside) {
@@ -226,7 +230,8 @@ double noise_of(const RecordData& data, const RecordFit& optimum) {
   return std::sqrt(std::max(optimum.chi2 / dof, 1e-300));
 }
 
-/// As far as should change the residual by `share` of `doubtful_change`; negative: to the other side. `held` moves, at most that far.
+/// As far as should change the residual by `share` of `doubtful_change`; negative: to the other side. `held`
+/// moves, at most that far.
 Move move_along(const RecordData& data, const RecordFit& optimum, const Eigen::VectorXd& direction,
                 Eigen::Index held, double share) {
   constexpr double far =
@@ -266,8 +271,8 @@ double rise_of(const RecordData& data, const RecordFit& optimum, double chi2) {
   return (chi2 - optimum.chi2) / (noise * noise);
 }
 
-/// Whether chi2 stays where it is along a direction about whose derivatives there is doubt: on one side, or on the other where the first has a
-/// bound or cannot be simulated.
+/// Whether chi2 stays where it is along a direction about whose derivatives there is doubt: on one side, or
+/// on the other where the first has a bound or cannot be simulated.
 bool stays_along(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
                  const Eigen::VectorXd& direction) {
   Eigen::Index held = 0;  // what moves most
@@ -306,8 +311,9 @@ Move carried_on(Move move, double share, const std::vector<ValleyPoint>& points)
   return move;
 }
 
-/// Follows the valley of chi2 from the answer to one side (1 or -1): number k is held at points along `direction`, the others are
-/// fitted anew. Steps are shorter where nothing can be simulated. Returns the last point: the end of the way, or where it ends before.
+/// Follows the valley of chi2 from the answer to one side (1 or -1): number k is held at points along
+/// `direction`, the others are fitted anew. Steps are shorter where nothing can be simulated. Returns the
+/// last point: the end of the way, or where it ends before.
 ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
                           const Eigen::VectorXd& direction, Eigen::Index k, double side) {
   constexpr double first_step = 0.25, least_step = 0.005;
@@ -328,10 +334,10 @@ ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, cons
   return points.back();
 }
 
-/// A point to one side of the answer at which chi2 has not risen as the interval of number k promises; none where it has, or where
-/// the way ends, at a bound or where nothing can be simulated, before that could be told. Where half the way chi2 rises
-/// along a straight line as in a linear model nothing is fitted anew, unless the numbers nearly go together: a valley that the derivatives
-/// miss by a little rises, too.
+/// A point to one side of the answer at which chi2 has not risen as the interval of number k promises; none
+/// where it has, or where the way ends, at a bound or where nothing can be simulated, before that could be
+/// told. Where half the way chi2 rises along a straight line as in a linear model nothing is fitted anew,
+/// unless the numbers nearly go together: a valley that the derivatives miss by a little rises, too.
 std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordData& data,
                                          const RecordFit& optimum, const Eigen::VectorXd& direction,
                                          Eigen::Index k, double side) {
@@ -353,9 +359,10 @@ std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordD
   return end;
 }
 
-/// Numbers whose interval the readings do not bear out become null directions: where the readings depend on a number by its square, as on
-/// the height of a probe above a plane of symmetry, every answer beside the plane has a derivative and the plane has none. What has moved
-/// by more than its standard error on the way belongs to the direction.
+/// Numbers whose interval the readings do not bear out become null directions: where the readings depend on a
+/// number by its square, as on the height of a probe above a plane of symmetry, every answer beside the plane
+/// has a derivative and the plane has none. What has moved by more than its standard error on the way belongs
+/// to the direction.
 void test_intervals(const RecordModel& model, const RecordData& data, RecordFit& fit) {
   const Eigen::Index count = fit.rank.covariance.rows();
   for (Eigen::Index k = 0; k < count && !model.stopped(); ++k) {

@@ -6,8 +6,8 @@
 
 namespace snare::identification {
 
-/// Least squares of the free simulation: (I.20). Gauss-Newton (Levenberg-Marquardt, bounds) with differences in parallel;
-/// or Nelder and Mead's simplex by NLopt, without derivatives on its way.
+/// Least squares of the free simulation: (I.20). Gauss-Newton (Levenberg-Marquardt, bounds) with differences
+/// in parallel; or Nelder and Mead's simplex by NLopt, without derivatives on its way.
 [[nodiscard]] RecordFit fit_motion(const RecordModel& model, const RecordData& data,
                                    std::vector<RecordSetting> start, const RecordFitOptions& options = {});
 
@@ -17,8 +17,9 @@ enum class Differences {
   forward   ///< one: for the way to a minimum, which they do not move
 };
 
-/// Derivatives of the stacked signal [-] by some numbers, each times the number's scale: differences of a tenth of the scale, one-sided
-/// at a bound. A column whose simulations fail is zero. `base`: predictions at `settings`; widen: factor of the steps, > 0.
+/// Derivatives of the stacked signal [-] by some numbers, each times the number's scale: differences of a
+/// tenth of the scale, one-sided at a bound. A column whose simulations fail is zero. `base`: predictions at
+/// `settings`; widen: factor of the steps, > 0.
 [[nodiscard]] Eigen::MatrixXd signal_derivatives(const RecordModel& model, const RecordData& data,
                                                  const std::vector<RecordSetting>& settings,
                                                  const std::vector<RecordPrediction>& base,
@@ -26,8 +27,9 @@ enum class Differences {
                                                  Differences differences = Differences::central,
                                                  double widen = 1.0);
 
-/// Fills `rank` of a usable fit with central derivatives, whose errors those by twice the step show. With null directions the
-/// covariance becomes that with one number of each held.                                       theory.md (I.32)
+/// Fills `rank` of a usable fit with central derivatives, whose errors those by twice the step show. With
+/// null directions the
+/// covariance becomes that with one number of each held.                                     theory.md (I.32)
 void find_rank(const RecordModel& model, const RecordData& data, RecordFit& fit);
 
 }  // namespace snare::identification

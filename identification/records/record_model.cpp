@@ -29,7 +29,8 @@ const WireMotions& run_of(const scenario::Scenario& s, const RecordSet& set) {
   return s.motions;
 }
 
-/// Long enough for the first readings of a record, whatever the scenario's own duration. A filter that runs both ways wants all of them.
+/// Long enough for the first readings of a record, whatever the scenario's own duration. A filter that runs
+/// both ways wants all of them.
 double duration_for(const Record& record, Eigen::Index readings, double interval) {
   const Eigen::Index last = (record.filter.cutoff > 0.0 ? record.times.size() : readings) - 1;
   return (std::ceil(record.times[last] / interval) + 1.0) * interval;

@@ -36,52 +36,54 @@ struct RecordSetting {
   double value = 0.0;  ///< in the unit of its key
 };
 
-/// How lively the declared motion is, for the sizes at which effects are tried: root mean squares along the first record.
+/// How lively the declared motion is, for the sizes at which effects are tried: root mean squares along the
+/// first record.
 struct JointUse {
   double torque = 0.0, rate = 0.0;  ///< in the spring or of the drive, the larger [N m]; of the motor [rad/s]
   bool slides = false;
   std::string link;  ///< that it moves
 };
 
-/// A scenario as a model of records: numbers in, channels out.                                   theory.md (I.20)
+/// A scenario as a model of records: numbers in, channels out.                               theory.md (I.20)
 class RecordModel {
  public:
-  /// stop: asked during simulations; true: leave them. Throws InputError for a scenario without sensors, or that lacks one of the channels,
-  /// and for keys of free numbers that are none.
+  /// stop: asked during simulations; true: leave them. Throws InputError for a scenario without sensors, or
+  /// that lacks one of the channels, and for keys of free numbers that are none.
   explicit RecordModel(const RecordSet& set, std::function<bool()> stop = {});
 
   [[nodiscard]] const RecordSet& records() const { return set_; }  ///< as read
-  [[nodiscard]] const DeclaredScenario& declared() const {
-    return declared_;
-  }  ///< the scenario as its file says
-  /// The free numbers of the file, at their declared values; those of every record for itself once for each of `records`.
+  /// The scenario as its file says.
+  [[nodiscard]] const DeclaredScenario& declared() const { return declared_; }
+  /// The free numbers of the file, at their declared values; those of every record for itself once for each
+  /// of `records`.
   [[nodiscard]] std::vector<RecordSetting> free_settings(const std::vector<std::size_t>& records) const;
   /// Unit of a channel's column, from the sensor's name: "mm".
   [[nodiscard]] std::string unit(const RecordChannel& channel) const;
   [[nodiscard]] const std::map<std::string, JointUse>& joints() const { return joints_; }
-  [[nodiscard]] const std::optional<SlowMode>& slowest() const {
-    return slowest_;
-  }  ///< of the first record's scenario
+  /// Of the first record's scenario.
+  [[nodiscard]] const std::optional<SlowMode>& slowest() const { return slowest_; }
   /// Full column of a channel's sensor.
   [[nodiscard]] const std::string& column(const RecordChannel& channel) const {
     return columns_.at(channel.sensor);
   }
 
-  /// Predictions of these records, of the first `readings` of each (empty: of all), beyond which nothing is simulated. In parallel, the same for any
-  /// number of threads.
+  /// Predictions of these records, of the first `readings` of each (empty: of all), beyond which nothing is
+  /// simulated. In parallel, the same for any number of threads.
   [[nodiscard]] std::vector<RecordPrediction> predict(const std::vector<RecordSetting>& settings,
                                                       const std::vector<std::size_t>& records,
                                                       const std::vector<Eigen::Index>& readings = {}) const;
-  /// The same for several settings at once: [setting][record]. Numbers of one record cost no simulation of the others: `base` are the predictions
-  /// at settings that differ in that number only, and are taken over where `only` says so.
+  /// The same for several settings at once: [setting][record]. Numbers of one record cost no simulation of
+  /// the others: `base` are the predictions at settings that differ in that number only, and are taken over
+  /// where `only` says so.
   [[nodiscard]] std::vector<std::vector<RecordPrediction>> predict_many(
       const std::vector<std::vector<RecordSetting>>& settings, const std::vector<std::size_t>& records,
       const std::vector<Eigen::Index>& readings = {}, const std::vector<RecordPrediction>* base = nullptr,
       const std::vector<std::optional<std::size_t>>& only = {}) const;
 
-  /// What the key of a number is set to, in its unit, where the number has this value and those before it in `settings` theirs: in the first of the
-  /// fitted records that it is in. An effect's number is counted from what is declared, and acts beside what others have set. The value itself
-  /// where a number has no key of the files.
+  /// What the key of a number is set to, in its unit, where the number has this value and those before it in
+  /// `settings` theirs: in the first of the fitted records that it is in. An effect's number is counted from
+  /// what is declared, and acts beside what others have set. The value itself where a number has no key of
+  /// the files.
   [[nodiscard]] double as_set(const std::vector<RecordSetting>& settings, std::size_t number,
                               double value) const;
 
@@ -97,7 +99,8 @@ class RecordModel {
   void bound_trials() const;
   [[nodiscard]] RecordPrediction simulate(const std::vector<RecordSetting>& settings, std::size_t record,
                                           Eigen::Index readings) const;
-  /// Keys of a record's scenario with the first `count` settings, and with all of them and the duration that so many readings want.
+  /// Keys of a record's scenario with the first `count` settings, and with all of them and the duration that
+  /// so many readings want.
   [[nodiscard]] std::vector<base::Override> keys_of(const std::vector<RecordSetting>& settings,
                                                     std::size_t count, std::size_t record) const;
   [[nodiscard]] std::vector<base::Override> overrides_of(const std::vector<RecordSetting>& settings,
@@ -117,8 +120,8 @@ class RecordModel {
   mutable std::atomic<long> simulations_ = 0;
   /// Steps of the longest run that came to its end, the declared one first.
   mutable std::atomic<long> longest_run_ = 0;
-  /// After which a trial is given up in which something spins or swings beyond all measure. What one batch of runs takes bounds the next,
-  /// so that threads do not matter.
+  /// After which a trial is given up in which something spins or swings beyond all measure. What one batch of
+  /// runs takes bounds the next, so that threads do not matter.
   mutable std::atomic<long> most_steps_ = std::numeric_limits<long>::max();
   /// Runs kept for settings that differ in the sensors only: the last few, by record and keys.
   mutable std::mutex kept_guard_;

@@ -12,8 +12,9 @@
 
 namespace snare::identification {
 
-/// How a sensor's reading differs from what the scenario's sensor tells s:                       theory.md (I.23)
-///   y(t) = gain (s * h)(t - delay) + bias + drift t,   h the low-pass filter of the first order of time `lag`.
+/// How a sensor's reading differs from what the scenario's sensor tells s:                   theory.md (I.23)
+///   y(t) = gain (s * h)(t - delay) + bias + drift t,
+///     h the low-pass filter of the first order of time `lag`.
 struct SignalChange {
   double gain = 1.0;   ///< [-]
   double bias = 0.0;   ///< in the unit of the channel
@@ -35,18 +36,20 @@ struct RecordNumber {
   bool scale_follows =
       false;  ///< steps of differences are those of the value where it is larger than declared
   std::optional<std::size_t> record;  ///< the one to which it belongs; none: all
-  /// Keys of the scenario with this value, in a record where numbers stand as `record` says: as it declares them, or as those before this one set
-  /// them. Either this or `signal`.
+  /// Keys of the scenario with this value, in a record where numbers stand as `record` says: as it declares
+  /// them, or as those before this one set them. Either this or `signal`.
   std::function<std::vector<base::Override>(double value, const StandingNumbers& record)> overrides;
   std::function<void(SignalChanges&, double value)> signal;
-  std::string
-      above;  ///< key of the number above which the first of `overrides` is counted: that number as it stands is added; empty: none
+  /// key of the number above which the first of `overrides` is counted: that number as it stands is
+  /// added; empty: none
+  std::string above;
 };
 
 /// A number, of any unit, as text that reads back to the same double.
 [[nodiscard]] std::string exact_text(double value);
 
-/// The number under a key of the scenario or of an arm's file, the same in all records; `declared` in the unit of the key.
+/// The number under a key of the scenario or of an arm's file, the same in all records; `declared` in the
+/// unit of the key.
 [[nodiscard]] RecordNumber keyed_number(const std::string& key, double declared);
 
 /// "mm", "N m/rad", ... of a key that ends in its unit; empty: a pure number.

@@ -14,15 +14,16 @@ namespace snare::identification {
 
 /// One column of a record: what a sensor of the scenario read, in the unit of the sensor's column.
 struct RecordChannel {
-  std::string
-      sensor;  ///< column of the scenario's telemetry: "gyro_x_deg_s", or the sensor's name where it has one column
+  /// column of the scenario's telemetry: "gyro_x_deg_s", or the sensor's name where it has one column
+  std::string sensor;
   std::string column;           ///< of the CSV file
   bool fitted = true;           ///< false: compared and told, not fitted
   std::optional<double> sigma;  ///< declared standard deviation of one reading
   Eigen::VectorXd values;
 };
 
-/// What was done to the readings of a record before they are compared, and is done to a prediction alike.    theory.md (I.25)
+/// What was done to the readings of a record before they are compared, and is done to a prediction alike.
+///                                                                                           theory.md (I.25)
 struct RecordFilter {
   double cutoff = 0.0;             ///< of the low-pass filter [Hz]; 0: none
   Eigen::VectorXd times;           ///< of all readings, evenly spaced [s]
@@ -47,7 +48,8 @@ struct FreeNumber {
   bool profile = false;  ///< its profile likelihood is asked
 };
 
-/// Other keys of the scenario under which the base fit is done once more: another kind of model of the same records.
+/// Other keys of the scenario under which the base fit is done once more: another kind of model of the same
+/// records.
 struct RecordFamily {
   std::string name;
   std::vector<base::Override> set;
@@ -55,7 +57,8 @@ struct RecordFamily {
 
 enum class FitMethod { gauss_newton, nelder_mead };
 
-/// A record file: records in time of runs of one scenario.                                     docs/record_file.md
+/// A record file: records in time of runs of one scenario.
+/// docs/record_file.md
 struct RecordSet {
   std::filesystem::path file, scenario;
   std::string title, source;

@@ -9,8 +9,9 @@ namespace snare::identification {
 
 namespace {
 
-/// The low-pass filter of the first order over readings that are straight in between, exactly: with u the way from one reading to the
-/// next and T the lag, y' = (s - y)/T gives y = s - T s' + (y0 - s0 + T s') exp(-t/T).
+/// The low-pass filter of the first order over readings that are straight in between, exactly: with u the way
+/// from one reading to the next and T the lag, y' = (s - y)/T gives y = s - T s' + (y0 - s0 + T s')
+/// exp(-t/T).
 std::vector<double> lagged(const std::vector<double>& times, const std::vector<double>& values, double lag) {
   if (!(lag > 0.0)) return values;
   std::vector<double> filtered(values);
@@ -23,7 +24,8 @@ std::vector<double> lagged(const std::vector<double>& times, const std::vector<d
   return filtered;
 }
 
-/// On the cubic through the four samples about a time, of which two are before it; of fewer samples the polynomial through all.
+/// On the cubic through the four samples about a time, of which two are before it; of fewer samples the
+/// polynomial through all.
 double value_at(const std::vector<double>& times, const std::vector<double>& values, double time) {
   if (time <= times.front()) return values.front();
   if (time >= times.back()) return values.back();

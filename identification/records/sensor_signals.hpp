@@ -21,8 +21,9 @@ struct SensorRun {
                                         const coupling::Motion& motion,
                                         const std::vector<coupling::MotionSample>& samples);
 
-/// The first `count` readings, in the units of their columns, at the times of a record, with changes: theory.md (I.23). Between readings of a sensor
-/// on the cubic through four; before the first one and behind the last one they stand. columns: full names of the channels' sensors.
+/// The first `count` readings, in the units of their columns, at the times of a record, with changes:
+/// theory.md (I.23). Between readings of a sensor on the cubic through four; before the first one and behind
+/// the last one they stand. columns: full names of the channels' sensors.
 [[nodiscard]] std::vector<Eigen::VectorXd> signals_at(const SensorRun& run, const Record& record,
                                                       Eigen::Index count,
                                                       const std::map<std::string, std::string>& columns,

@@ -24,7 +24,9 @@ struct Search {
   std::exception_ptr thrown;
 };
 
-/// Honda's measure of a step to a better place: |p - p'| over |p'| with p' the place before, numbers over their declared values.   theory.md (I.30)
+/// Honda's measure of a step to a better place: |p - p'| over |p'| with p' the place before, numbers over
+/// their declared values.
+///                                                                                           theory.md (I.30)
 double moves_to(Search& search, double chi2) {
   std::vector<double> there;
   for (const RecordSetting& s : search.settings)

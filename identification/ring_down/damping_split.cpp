@@ -91,7 +91,8 @@ SplitSolution admissible(const Line& line, const VectorXd& scatter, const std::v
   return best;
 }
 
-/// Deviations of the decays that make the misfit what it is expected to be: one share, common to all, of what the line gives.
+/// Deviations of the decays that make the misfit what it is expected to be: one share, common to all, of what
+/// the line gives.
 VectorXd scatter_of(const Line& line, const std::vector<Index>& columns) {
   const auto n = line.right.size();
   constexpr double floor = 1e-3;  // of the largest rate: a line may give zero
@@ -111,7 +112,8 @@ VectorXd scatter_of(const Line& line, const std::vector<Index>& columns) {
   return scatter;
 }
 
-/// Half of a 95 % interval of Student's t with `dof` degrees of freedom, over that of the normal distribution.
+/// Half of a 95 % interval of Student's t with `dof` degrees of freedom, over that of the normal
+/// distribution.
 double wider_by(double dof) {
   constexpr double tail = 0.025;
   return boost::math::quantile(boost::math::complement(boost::math::students_t(dof), tail)) /

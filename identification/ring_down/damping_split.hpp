@@ -17,13 +17,14 @@ struct DecayOfMode {
   Estimate decay;  ///< s [1/s]
 };
 
-/// Material and mass-proportional damping from decay rates.                                     theory.md (I.10)
+/// Material and mass-proportional damping from decay rates.                                  theory.md (I.10)
 struct DampingSplit {
   bool separated = false;    ///< two frequencies far enough apart
   Estimate bending_time;     ///< [s]; not separated: the value if all were material
   Estimate mass_rate;        ///< [1/s]; not separated: the value if all were mass-proportional
   double correlation = 0.0;  ///< of the two estimates [-]
-  /// P of a chi-square as large as that of the best line without negative damping, of misfit_dof degrees of freedom [-].
+  /// P of a chi-square as large as that of the best line without negative damping, of misfit_dof degrees of
+  /// freedom [-].
   double misfit_p = 1.0;
   int misfit_dof = 0;  ///< decays less the numbers that are not zero; 0: nothing to test, and misfit_p is 1
   std::string statement;              ///< in words: what is known and what is not
@@ -32,8 +33,9 @@ struct DampingSplit {
   [[nodiscard]] bool consistent() const { return misfit_p >= 0.01; }
 };
 
-/// Weighted least squares of the two numbers. covariance: of the decays s [1/s^2], symmetric, positive; the first form takes them for
-/// independent. Decays that contradict the law give intervals widened by their scatter about it, and a warning.
+/// Weighted least squares of the two numbers. covariance: of the decays s [1/s^2], symmetric, positive; the
+/// first form takes them for independent. Decays that contradict the law give intervals widened by their
+/// scatter about it, and a warning.
 [[nodiscard]] DampingSplit split_damping(const std::vector<DecayOfMode>& decays);
 [[nodiscard]] DampingSplit split_damping(const std::vector<DecayOfMode>& decays,
                                          const Eigen::MatrixXd& covariance);

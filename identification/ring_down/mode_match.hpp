@@ -13,7 +13,8 @@ struct MatchedMode {
   std::size_t series = 0, mode = 0;  ///< indices
   DecayOfMode decay;                 ///< its bending_share: bending and axial together, one time for both
   double computed = 0.0;  ///< natural angular frequency of the wire's mode [rad/s]; 0: no wire declared
-  /// What the mesh does to the frequency of that mode, see coupling::add_mesh_errors [Hz]; none: no wire, or not known.
+  /// What the mesh does to the frequency of that mode, see coupling::add_mesh_errors [Hz]; none: no wire, or
+  /// not known.
   std::optional<double> computed_error;
   Eigen::VectorXd covariance;  ///< of its decay with those of all modes of its record [1/s^2]
 };

@@ -18,8 +18,8 @@ struct OscillationLayout {
   [[nodiscard]] Eigen::Index friction() const { return size() - 1; }
 };
 
-/// Values [m] at these times [s] from the first reading and, where `by` is given, their derivatives by the numbers p:
-/// b, C, S [m], w [rad/s], s, g [1/s].
+/// Values [m] at these times [s] from the first reading and, where `by` is given, their derivatives by the
+/// numbers p: b, C, S [m], w [rad/s], s, g [1/s].
 [[nodiscard]] Eigen::VectorXd oscillations(const OscillationLayout& layout, const Eigen::VectorXd& p,
                                            const Eigen::VectorXd& time, Eigen::MatrixXd* by = nullptr);
 

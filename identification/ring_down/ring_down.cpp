@@ -93,7 +93,8 @@ Solution solve(const OscillationLayout& layout, const VectorXd& start, const Vec
   return solution;
 }
 
-/// Angular frequency of the largest peak of the spectrum of the readings, carried over to even times; padded fourfold.
+/// Angular frequency of the largest peak of the spectrum of the readings, carried over to even times; padded
+/// fourfold.
 double peak_frequency(const VectorXd& time, const VectorXd& values) {
   std::size_t count = 16;
   while (count < static_cast<std::size_t>(time.size())) count *= 2;
@@ -229,7 +230,8 @@ Numbers with_friction(const Numbers& without, Index largest, const VectorXd& tim
   return bic_gain > least_significant_bic ? rubbing : without;
 }
 
-/// s^2 (J^T J)^-1 with the residual's variance s^2; infinite variances of numbers that the readings do not determine, (I.32).
+/// s^2 (J^T J)^-1 with the residual's variance s^2; infinite variances of numbers that the readings do not
+/// determine, (I.32).
 MatrixXd covariance_of(const MatrixXd& by, const VectorXd& residual) {
   const Identifiability rank = identifiability_of(by, {});
   const double variance = residual.squaredNorm() / static_cast<double>(residual.size() - by.cols());

@@ -56,7 +56,8 @@ struct RingDownFit {
   [[nodiscard]] bool noise_only() const { return runs_p > 1e-3 && ljung_box_p > 1e-3; }
 };
 
-/// What is wrong with the readings for this purpose, or empty: fewer than 20, no motion, times that do not rise.
+/// What is wrong with the readings for this purpose, or empty: fewer than 20, no motion, times that do not
+/// rise.
 [[nodiscard]] std::string ring_down_problem(const RingDown& data);
 
 /// Fits decaying oscillations by least squares (Ceres): frequencies from peaks of the spectrum one after the

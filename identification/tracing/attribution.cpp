@@ -52,7 +52,8 @@ Smooth solve(const Eigen::MatrixXd& free, const Eigen::MatrixXd& columns, const 
 }
 
 std::string describe(const ChannelFunction& f) {
-  // Stretches in which the function stands out by more than three deviations and a quarter of its largest value.
+  // Stretches in which the function stands out by more than three deviations and a quarter of its largest
+  // value.
   double largest = 0.0;
   for (const double v : f.value) largest = std::max(largest, std::abs(v));
   std::string text;
@@ -74,7 +75,8 @@ std::string describe(const ChannelFunction& f) {
   return text.empty() ? "nowhere beyond three standard deviations" : text;
 }
 
-/// A position or a slack left out: the rows that stay, the rows that go, and what the numbers of the fit alone leave there.
+/// A position or a slack left out: the rows that stay, the rows that go, and what the numbers of the fit
+/// alone leave there.
 struct Fold {
   std::vector<Eigen::Index> in, out;
   Eigen::MatrixXd free_in, free_out;

@@ -27,9 +27,9 @@ struct ChannelFunction {
   std::string shape;       ///< in words
 };
 
-/// Where a residual comes from: every channel's function by regularised least squares on the derivatives of the model
-/// (second differences penalised, weight by cross-validation, numbers of the fit free), best first.
-/// theory.md (I.6)
+/// Where a residual comes from: every channel's function by regularised least squares on the derivatives of
+/// the model (second differences penalised, weight by cross-validation, numbers of the fit free), best first.
+///                                                                                            theory.md (I.6)
 [[nodiscard]] std::vector<ChannelFunction> attribute(const Model& model, const Data& data,
                                                      const Fit& current);
 

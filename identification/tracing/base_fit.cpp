@@ -37,8 +37,8 @@ std::string unseen(const Parameter& p, const std::vector<Series>& all) {
   return none ? p.unseen(series.front().test) : "";
 }
 
-/// A start of the base fit from fractions of the declared section's stiffnesses, after a few steps on a coarse mesh. Empty where none
-/// comes below `best`, computed on the same mesh.
+/// A start of the base fit from fractions of the declared section's stiffnesses, after a few steps on a
+/// coarse mesh. Empty where none comes below `best`, computed on the same mesh.
 std::vector<Setting> far_start(const Model& model, const Data& data, const std::vector<Setting>& start,
                                const Fit& best, Progress& progress) {
   const Model coarse(model.series(), few_edges(model.solver()));
@@ -153,8 +153,9 @@ Fit fit_base(const Experiment& experiment, const std::vector<std::string>& free,
 
 namespace {
 
-/// Sets the standard deviation of published fits to that of greatest likelihood, its bias corrected, if it is smaller
-/// than that about parabolas: a wrong model makes it larger, which would hide the missing effect. Fits again.
+/// Sets the standard deviation of published fits to that of greatest likelihood, its bias corrected, if it is
+/// smaller than that about parabolas: a wrong model makes it larger, which would hide the missing effect.
+/// Fits again.
 void settle_scatter(const Model& model, Data& data, Fit& base) {
   const SummaryStatistics found =
       summary_statistics(model, data.series, base.settings, base.free, {.scatter = data.noise.scatter});
@@ -195,7 +196,8 @@ void settle_noise(const Model& model, Data& data, Fit& base) {
 
 namespace {
 
-/// The numbers of a fit with number k moved by so many standard errors, the others along its valley, within their bounds.
+/// The numbers of a fit with number k moved by so many standard errors, the others along its valley, within
+/// their bounds.
 std::vector<Setting> along_valley(const Model& model, const Fit& fit, Eigen::Index k, double errors) {
   std::vector<Setting> settings = fit.fitted();
   const double error = std::sqrt(fit.covariance(k, k));

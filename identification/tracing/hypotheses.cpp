@@ -116,15 +116,17 @@ class Evidence {
     return largest;
   }
 
-  /// ln of the likelihood: -S/2 - ln det / 2, or, with the size of the noise marginalised, -(n - p)/2 ln S in place of the first.
+  /// ln of the likelihood: -S/2 - ln det / 2, or, with the size of the noise marginalised, -(n - p)/2 ln S in
+  /// place of the first.
   [[nodiscard]] double likelihood(double squares, double logarithm) const {
     const double s = std::max(squares, 1e-300);
     return declared_ ? -0.5 * (s + logarithm) : -0.5 * (left_ * std::log(s) + logarithm);
   }
 
-  /// The derivatives times the deviations of normal priors that have, where the fit ended, the density of the numbers' own priors: flat; of the
-  /// first number of an effect flat in the logarithm of its size, the norm of the change of the whitened readings that no number of the base
-  /// model can make. With s that size, dF the derivative: 2 s ln(largest/least) / (sqrt(2 pi) |dF|).
+  /// The derivatives times the deviations of normal priors that have, where the fit ended, the density of the
+  /// numbers' own priors: flat; of the first number of an effect flat in the logarithm of its size, the norm
+  /// of the change of the whitened readings that no number of the base model can make. With s that size, dF
+  /// the derivative: 2 s ln(largest/least) / (sqrt(2 pi) |dF|).
   [[nodiscard]] MatrixXd scaled(const Fit& fit) const {
     MatrixXd jacobian = fit.jacobian;
     const auto base = static_cast<Index>(base_.free);

@@ -7,7 +7,8 @@
 
 namespace snare::identification {
 
-/// What may be behind the readings: the base model, with effects of the catalogue, with an unknown function, or with both.
+/// What may be behind the readings: the base model, with effects of the catalogue, with an unknown function,
+/// or with both.
 struct CauseHypothesis {
   std::vector<std::string> effects;  ///< of the catalogue
   std::string discrepancy;           ///< variable of an unknown function, see Discrepancy; empty: none
@@ -22,9 +23,11 @@ struct FittedModel {
   Fit fit;                           ///< its evaluation may be empty
 };
 
-/// Weighs hypotheses by their marginal likelihoods, best first; the probabilities sum to one.            theory.md (I.37)
-/// models: the base model first. Noise: as the data have it, independent or autocorrelated within a series; its size is marginalised where it
-/// is not declared. Unknown functions stand beside the base model and beside the three best models with effects. Empty for published fits.
+/// Weighs hypotheses by their marginal likelihoods, best first; the probabilities sum to one.
+///                                                                                           theory.md (I.37)
+/// models: the base model first. Noise: as the data have it, independent or autocorrelated within a series;
+/// its size is marginalised where it is not declared. Unknown functions stand beside the base model and
+/// beside the three best models with effects. Empty for published fits.
 [[nodiscard]] std::vector<CauseHypothesis> weigh_hypotheses(const Model& model, const Data& data,
                                                             const std::vector<FittedModel>& models);
 

@@ -10,8 +10,8 @@ namespace snare::identification {
 
 namespace {
 
-/// Where a fit has a number, and its standard error in the coordinate, widened as Student's t is against the normal distribution;
-/// absent where it has not, or its readings do not tell.
+/// Where a fit has a number, and its standard error in the coordinate, widened as Student's t is against the
+/// normal distribution; absent where it has not, or its readings do not tell.
 struct Place {
   double coordinate = 0.0;
   double deviation = 0.0;

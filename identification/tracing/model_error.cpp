@@ -29,7 +29,8 @@ FittedNumber number_of(const Model& model, const Setting& s) {
   return n;
 }
 
-/// Its standard error and 95 % either way, by Student's t of the noise's degrees of freedom, as far as that is admissible.
+/// Its standard error and 95 % either way, by Student's t of the noise's degrees of freedom, as far as that
+/// is admissible.
 void give_interval(const Model& model, const Setting& s, double deviation, double noise_dof,
                    FittedNumber& n) {
   const Parameter& p = *s.parameter;
@@ -179,7 +180,8 @@ std::map<double, std::vector<Eigen::Index>> rows_by(const Model& model, const Da
   return groups;
 }
 
-/// Rows by the leg of the path, as far as all series have it; with one leg those of the last third of the travel.
+/// Rows by the leg of the path, as far as all series have it; with one leg those of the last third of the
+/// travel.
 std::vector<std::vector<Eigen::Index>> rows_of_legs(const Model& model, const Data& data) {
   std::vector<std::vector<Eigen::Index>> legs;
   std::vector<Eigen::Index> last;
@@ -257,7 +259,7 @@ LeftOut left_out_conditions(const Model& model, const Data& data) {
 namespace {
 
 /// Squares of what a fit to the others leaves in every condition that is left out, and how many there are.
-/// left: by the fit to all; by: its derivatives; both whitened, or of forces.                      theory.md (I.5)
+/// left: by the fit to all; by: its derivatives; both whitened, or of forces.                 theory.md (I.5)
 struct Squares {
   double sum = 0.0;
   double count = 0.0;
@@ -278,8 +280,9 @@ Squares left_out(const Model& model, const Data& data, const Fit& fit, const Lef
     if (in.empty() || out.empty()) continue;
     Eigen::VectorXd left = all.residual(out);
     if (fit.free > 0) {
-      // Without these readings the numbers move by (J^T J)^-1 J^T r of the rows that stay, but for directions that only the readings
-      // left out can tell (the zero of a series, a yield stress that nothing else reaches).
+      // Without these readings the numbers move by (J^T J)^-1 J^T r of the rows that stay, but for directions
+      // that only the readings left out can tell (the zero of a series, a yield stress that nothing else
+      // reaches).
       const Eigen::MatrixXd rest = fit.jacobian(in, Eigen::all) * directions;
       const Eigen::MatrixXd columns = all.jacobian(out, Eigen::all) * directions;
       const numerics::SymmetricEigen told = numerics::symmetric_eigen(rest.transpose() * rest);

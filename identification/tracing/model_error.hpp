@@ -16,8 +16,8 @@ struct FittedNumber {
   double declared = 0.0;
   double value = 0.0;
   std::optional<double> standard_error;  ///< none where the readings do not determine the number
-  /// Of the 95 % interval: by Student's t of the noise's degrees of freedom, unless by one of the two below. An end
-  /// that is not admissible is absent, and so is that at the bound on which the number stands.
+  /// Of the 95 % interval: by Student's t of the noise's degrees of freedom, unless by one of the two below.
+  /// An end that is not admissible is absent, and so is that at the bound on which the number stands.
   std::optional<double> lower;
   std::optional<double> upper;
   bool profiled = false;  ///< profile likelihood
@@ -63,15 +63,16 @@ struct ModelError {
 /// Root mean square of measured less computed forces over the fitted readings [N].
 [[nodiscard]] double fitted_rmse(const Data& data, const Evaluation& evaluation);
 
-/// Readings of the conditions that are left out one by one, as rows of the data: the positions, the slacks; with one of
-/// each the legs of the path; with one leg the last third of the travel.
+/// Readings of the conditions that are left out one by one, as rows of the data: the positions, the slacks;
+/// with one of each the legs of the path; with one leg the last third of the travel.
 struct LeftOut {
   std::vector<std::vector<Eigen::Index>> rows;
   bool several = false;  ///< positions or slacks
 };
 [[nodiscard]] LeftOut left_out_conditions(const Model& model, const Data& data);
 
-/// Root mean square error [N] of every condition predicted by a fit to the others, to first order. theory.md (I.5)
+/// Root mean square error [N] of every condition predicted by a fit to the others, to first order. theory.md
+/// (I.5)
 [[nodiscard]] double left_out_rmse(const Model& model, const Data& data, const Fit& fit);
 
 /// Squares of the same errors, whitened, less what noise alone would leave: excess of chi2 [-].

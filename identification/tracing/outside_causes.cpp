@@ -14,7 +14,8 @@ constexpr double one_cause = 0.9;        // share carried over beside which seve
 constexpr double rest_of_rival =
     0.001;  // P below which an effect has left something in the direction of its rival
 
-/// Whether the function has this effect in it: it is of its channel, or one of its numbers where it has no slope.
+/// Whether the function has this effect in it: it is of its channel, or one of its numbers where it has no
+/// slope.
 bool contains(const ChannelFunction& f, const Effect& effect) {
   const auto is_constant = [&f](const EffectNumber& n) { return n.parameter.key == f.constant; };
   return f.channel == effect.channel ||

@@ -15,7 +15,8 @@ constexpr double weight_from =
     0.05;  // of the largest computed force: readings below it say nothing of the sign
 constexpr double nearly_all_turned = 0.8;  // of these readings
 
-/// Share of the readings whose sign is against that of the computed force, of those where it counts; nothing without any.
+/// Share of the readings whose sign is against that of the computed force, of those where it counts; nothing
+/// without any.
 std::optional<double> share_against(const std::vector<double>& measured,
                                     const std::vector<double>& computed) {
   double largest = 0.0, count = 0.0, against = 0.0;
@@ -77,8 +78,8 @@ Ratios ratios_of(const Model& model, const Fit& fit) {
   return ratios;
 }
 
-/// Whether all ratios are the one of a slip: within a tenth where there is one, within a fifth where two agree on it. For the
-/// factor of lbf, which strands have as well, half of that.
+/// Whether all ratios are the one of a slip: within a tenth where there is one, within a fifth where two
+/// agree on it. For the factor of lbf, which strands have as well, half of that.
 bool all_near(const std::vector<double>& log, double of) {
   if (log.empty()) return false;
   const bool common = std::abs(std::log(of)) < std::log(6.0);
@@ -94,7 +95,8 @@ Finding slip_finding(std::string key, double ratio, double factor, const std::st
   return f;
 }
 
-/// The readings in another unit: forces and travels times their factors, noise likewise, without its correlation.
+/// The readings in another unit: forces and travels times their factors, noise likewise, without its
+/// correlation.
 struct Rescaled {
   Model model;
   Data data;

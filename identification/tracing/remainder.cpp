@@ -28,8 +28,8 @@ struct CommonLeg {
   Eigen::Index hats = 0;
 };
 
-/// Columns of hat functions over the legs of all conditions, as forces [N], the data's series one below the other: two
-/// entries a row at most.
+/// Columns of hat functions over the legs of all conditions, as forces [N], the data's series one below the
+/// other: two entries a row at most.
 Eigen::SparseMatrix<double> hats_of(const Model& model, const Data& data) {
   std::vector<Series> fitted;
   std::vector<Eigen::Index> row_of;
@@ -155,8 +155,9 @@ Remainder remainder(const Model& model, const Data& data, const Fit& fit) {
     scale[k] = 1.0 / std::max(white.col(k).norm(), 1e-300);
     white.col(k) *= scale[k];
   }
-  // A = (1 - B B^T) W, B the basis of the Jacobian: A^T A = W^T W - (B^T W)^T (B^T W) = V S^2 V^T and U^T r = S^-1 V^T A^T r.
-  // As many rows as readings are in W alone. What is asked for is well above the roundings of the squares.
+  // A = (1 - B B^T) W, B the basis of the Jacobian: A^T A = W^T W - (B^T W)^T (B^T W) = V S^2 V^T and U^T r =
+  // S^-1 V^T A^T r. As many rows as readings are in W alone. What is asked for is well above the roundings of
+  // the squares.
   const Projection fitted(fit.jacobian);
   const Eigen::MatrixXd& basis = fitted.basis();
   const Eigen::MatrixXd inside = basis.transpose() * white;
@@ -177,7 +178,8 @@ Remainder remainder(const Model& model, const Data& data, const Fit& fit) {
   result.ratio = q / d;
   result.p = fisher_tail(result.ratio, d, data.noise.dof);
   if (!(q > 0.0)) return result;
-  // The function: values of the hats, and the fitted numbers c moved along so that it has nothing in their directions.
+  // The function: values of the hats, and the fitted numbers c moved along so that it has nothing in their
+  // directions.
   const Eigen::VectorXd values = v * s.cwiseInverse().asDiagonal() * part;
   Eigen::VectorXd function = hats * (scale.asDiagonal() * values);
   if (fit.jacobian.cols() > 0) {

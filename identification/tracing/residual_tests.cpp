@@ -39,7 +39,8 @@ ResidualTests test_residuals(const Model& model, const Data& data, const Fit& fi
     tests.lack_of_fit = tests.published->p;
     return tests;
   }
-  // Replicates say how much their mean may be off; of the noise from second differences its own degrees of freedom.
+  // Replicates say how much their mean may be off; of the noise from second differences its own degrees of
+  // freedom.
   const double dof = std::max(1.0, fit.dof());
   tests.lack_of_fit =
       tests.against_replicates ? tests.left.p : fisher_tail(fit.chi2 / dof, dof, data.noise.dof);

@@ -26,8 +26,8 @@ struct ResidualTests {
   [[nodiscard]] bool like_noise() const;
   /// At most this much is left, with 95 % confidence [N].
   [[nodiscard]] bool within(double tolerance) const { return left.upper <= tolerance; }
-  /// What is left is like noise, or smaller than the noise. Published fits must agree with the computed ones: of them there is
-  /// no reading whose noise could hide anything.
+  /// What is left is like noise, or smaller than the noise. Published fits must agree with the computed ones:
+  /// of them there is no reading whose noise could hide anything.
   [[nodiscard]] bool within_noise() const { return like_noise() || (!of_published && rmse <= noise); }
   /// Nothing worth naming is left: it is within the noise or within the tolerance [N].
   [[nodiscard]] bool acceptable(double tolerance) const {

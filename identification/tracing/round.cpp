@@ -26,7 +26,8 @@ constexpr double least_fall = 0.9;  // of the root mean square error, which must
 constexpr double out_of_class_bic = 30.0;  // well beyond it
 constexpr double worthwhile_bic = 2.0;     // gain of BIC that an effect must bring
 constexpr std::size_t most_refits = 6;
-// An effect is refitted if its searched start is within this share and margin of the least chi2 of the search.
+// An effect is refitted if its searched start is within this share and margin of the least chi2 of the
+// search.
 constexpr double searched_share = 1.5, searched_margin = 60.0;
 constexpr double starts_tried = 10.0;  // an effect, by which the p of its refit is multiplied
 // A refit gains about z^2 of chi2, more where the model bends (thresholds): effects whose z^2 is below this
@@ -35,10 +36,12 @@ constexpr double refit_share = 0.4;
 constexpr double near_significance = 0.05;
 constexpr double most_ratio =
     0.7;  // of the logarithm of a number that an effect moves, at the start of its refit
-// Of the excess of chi2 over the degrees of freedom: where a refit takes more, no other minimum can be much better.
+// Of the excess of chi2 over the degrees of freedom: where a refit takes more, no other minimum can be much
+// better.
 constexpr double nearly_all = 0.95;
 
-/// The first settings moved by so much (their coordinates), within their bounds; ratios at most by `most_ratio`.
+/// The first settings moved by so much (their coordinates), within their bounds; ratios at most by
+/// `most_ratio`.
 std::vector<Setting> moved(const Model& model, std::vector<Setting> settings, const Eigen::VectorXd& shift) {
   for (Eigen::Index k = 0; k < shift.size(); ++k) {
     Setting& s = settings[static_cast<std::size_t>(k)];
@@ -71,8 +74,8 @@ std::vector<Setting> with(std::vector<Setting> settings, const Effect& effect, c
   return settings;
 }
 
-/// The starts of a refit, best first: that of the search, those of the score, and those of the score with the earlier effects at their
-/// first trials.
+/// The starts of a refit, best first: that of the search, those of the score, and those of the score with the
+/// earlier effects at their first trials.
 std::vector<std::vector<Setting>> starts_of(const Model& model, const Data& data, const Current& current,
                                             const Candidate& candidate) {
   const Score& score = candidate.score;
@@ -87,8 +90,9 @@ std::vector<std::vector<Setting>> starts_of(const Model& model, const Data& data
   return result;
 }
 
-/// The model with an effect added, fitted from each start; not usable where none of them gives a fit. A start that removes nearly all
-/// of the excess of chi2 ends the search, and a start that does not approach the best chi2 so far is abandoned.
+/// The model with an effect added, fitted from each start; not usable where none of them gives a fit. A start
+/// that removes nearly all of the excess of chi2 ends the search, and a start that does not approach the best
+/// chi2 so far is abandoned.
 Fit refit(const Model& model, const Data& data, const Current& current, const Candidate& candidate,
           double rival, Progress& progress) {
   Fit best;
@@ -114,7 +118,8 @@ Fit refit(const Model& model, const Data& data, const Current& current, const Ca
   return best;
 }
 
-/// Whether the refitted numbers of an effect make sense: inside their plausible ranges, and not driven to a bound.
+/// Whether the refitted numbers of an effect make sense: inside their plausible ranges, and not driven to a
+/// bound.
 void judge_plausibility(const Model& model, const Fit& current, const Fit& refitted, Candidate& candidate) {
   const Effect& effect = *candidate.score.effect;
   for (std::size_t k = 0; k < candidate.numbers.size(); ++k) {
@@ -197,9 +202,9 @@ double cosine(const Candidate& a, const Candidate& b) {
   return std::abs(a.score.direction.dot(b.score.direction));
 }
 
-/// Classes: the leading effect with all whose refits are within 6 of its BIC, in units of the variance that it leaves
-/// where that is more than the noise's; then the others by their directions, |cos| > 0.95, or as what the base model's
-/// numbers do already.
+/// Classes: the leading effect with all whose refits are within 6 of its BIC, in units of the variance that
+/// it leaves where that is more than the noise's; then the others by their directions, |cos| > 0.95, or as
+/// what the base model's numbers do already.
 void classify(const Fit& current, double inflation, Round& round, const std::vector<Fit>& fits) {
   std::vector<Candidate>& all = round.candidates;
   std::vector<bool> placed(all.size(), false);
@@ -252,7 +257,8 @@ bool worth_a_refit(const Candidate& c) {
   return c.score.unobservable.empty() || c.score.absorbed;
 }
 
-/// The least chi2 that an effect promises: that of its search, or the current one less the square of its score.
+/// The least chi2 that an effect promises: that of its search, or the current one less the square of its
+/// score.
 double promised_chi2(const Candidate& c, const Fit& current) {
   const bool scored = c.score.unobservable.empty();
   const double by_score = current.chi2 - (scored ? c.score.z * c.score.z : 0.0);
@@ -260,8 +266,8 @@ double promised_chi2(const Candidate& c, const Fit& current) {
   return std::min(by_score, c.searched->chi2);
 }
 
-/// Searches the start of every effect that these data may show, and sorts the effects by the chi2 that they promise; the likeliest
-/// come first, so that the others are abandoned early.
+/// Searches the start of every effect that these data may show, and sorts the effects by the chi2 that they
+/// promise; the likeliest come first, so that the others are abandoned early.
 void search_starts(const Model& model, const Data& data, const Current& current,
                    std::vector<Candidate>& candidates, Progress& progress) {
   const StartSearch search(model, data, current.fit);
@@ -276,7 +282,8 @@ void search_starts(const Model& model, const Data& data, const Current& current,
   });
 }
 
-/// Whether an effect that changes the curves in the same way has been refitted and did not come near the best.
+/// Whether an effect that changes the curves in the same way has been refitted and did not come near the
+/// best.
 bool as_one_that_lost(const std::vector<Candidate>& candidates, const std::vector<Fit>& fits,
                       std::size_t which, double worst) {
   for (std::size_t k = 0; k < which; ++k) {
@@ -286,7 +293,8 @@ bool as_one_that_lost(const std::vector<Candidate>& candidates, const std::vecto
   return false;
 }
 
-/// Refits the significant ones and what is nearly in their direction. One fit a candidate, empty where there was none.
+/// Refits the significant ones and what is nearly in their direction. One fit a candidate, empty where there
+/// was none.
 std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut& heldout,
                             const Current& current, const AcceptanceCriteria& demands,
                             std::vector<Candidate>& candidates, const std::string& round,
@@ -319,7 +327,8 @@ std::vector<Fit> refit_best(const Model& model, const Data& data, const HeldOut&
   return fits;
 }
 
-/// Refits what has not been refitted and is so near the leader in direction that the scores cannot tell it from it.
+/// Refits what has not been refitted and is so near the leader in direction that the scores cannot tell it
+/// from it.
 void refit_rivals(const Model& model, const Data& data, const HeldOut& heldout, const Current& current,
                   const AcceptanceCriteria& demands, std::vector<Candidate>& candidates,
                   std::vector<Fit>& fits, const std::string& round, Progress& progress) {

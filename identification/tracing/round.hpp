@@ -23,8 +23,8 @@ struct Candidate {
   std::vector<FittedNumber> numbers;  ///< of the effect after the refit
   bool plausible = true;
   std::string why_implausible;
-  std::string
-      why_too_small;  ///< what it changes is not worth a name, or the readings cannot bear it; empty: it may be
+  /// what it changes is not worth a name, or the readings cannot bear it; empty: it may be
+  std::string why_too_small;
   std::optional<bool> heldout_improves;
   std::size_t class_index = 0;
 };
@@ -60,8 +60,9 @@ struct RoundFits {
 struct Current {
   const Fit& fit;
   Remainder left;  ///< beside the noise
-  /// Its numbers where they were begun: those of the base fit, and the first trials of the effects added since. Beside
-  /// another missing effect thresholds run astray, and what they are refitted from then holds them there. Empty: no such.
+  /// Its numbers where they were begun: those of the base fit, and the first trials of the effects added
+  /// since. Beside another missing effect thresholds run astray, and what they are refitted from then holds
+  /// them there. Empty: no such.
   std::vector<Setting> anew;
   bool search =
       false;  ///< every effect is looked for from finite sizes: a base model that leaves more than noise
@@ -77,7 +78,8 @@ struct AcceptanceCriteria {
 /// Degrees of freedom that must be left beside `numbers` fitted numbers.
 [[nodiscard]] double fewest_dof(std::size_t numbers);
 
-/// Scores of every effect beside `current`, refits of the best, ranking, classes, and the effect to add, if any.
+/// Scores of every effect beside `current`, refits of the best, ranking, classes, and the effect to add, if
+/// any.
 /// number: of the round, from 1.                                                      theory.md (I.4), (I.5)
 [[nodiscard]] RoundFits look_for_effect(const Model& model, const Data& data, const HeldOut& heldout,
                                         const Current& current, std::size_t number,

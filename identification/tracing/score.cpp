@@ -12,7 +12,8 @@ namespace snare::identification {
 
 namespace {
 
-/// Share of a column that must be left after projection, else it lies in the span: derivatives carry the mesh's error.
+/// Share of a column that must be left after projection, else it lies in the span: derivatives carry the
+/// mesh's error.
 constexpr double left_over = 1e-3;
 /// Change of all readings together below which nothing is seen: a thousandth of one reading's noise.
 constexpr double least_change = 1e-3;
@@ -119,7 +120,8 @@ Scoring::Scoring(const Model& model, const Data& data, const Fit& current)
       context_(trial_context(model, current)),
       coarse_(model.series(), few_edges(model.solver())) {}
 
-// An empty score for every effect that is not fitted already; why these data cannot show it, where they cannot.
+// An empty score for every effect that is not fitted already; why these data cannot show it, where they
+// cannot.
 std::vector<Score> Scoring::observable_scores() {
   std::vector<Score> scores;
   const std::vector<Series> now = model_.apply(current_.settings).series;
@@ -199,7 +201,8 @@ std::vector<Trial> Scoring::trials_of(const Effect& effect, bool& spanned) const
   return trials;
 }
 
-// The same with the change at each of a grid of finite amplitudes: the largest z counts, its p times their number.
+// The same with the change at each of a grid of finite amplitudes: the largest z counts, its p times their
+// number.
 void Scoring::by_trials(Score& score) const {
   const Parameter& first = score.effect->numbers.front().parameter;
   bool spanned = false;

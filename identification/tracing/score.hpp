@@ -11,7 +11,8 @@ namespace snare::identification {
 /// Where a refit with an effect may begin.
 struct RefitStart {
   std::vector<double> coordinates;  ///< of the effect's numbers [SI units; -]
-  /// By how much the fitted numbers' coordinates move beside it, to first order [likewise]; zero beside a threshold.
+  /// By how much the fitted numbers' coordinates move beside it, to first order [likewise]; zero beside a
+  /// threshold.
   Eigen::VectorXd shift;
 };
 
@@ -25,10 +26,12 @@ struct Score {
   double adjusted_p = 1.0;         ///< by Holm, over the observable effects
   std::vector<RefitStart> starts;  ///< best first
   Eigen::VectorXd direction;  ///< whitened change of the forces, fitted columns projected out, unit length
-  /// By how much the coordinates of the fitted numbers move, a unit of z, when the effect is added, to first order (in their units).
+  /// By how much the coordinates of the fitted numbers move, a unit of z, when the effect is added, to first
+  /// order (in their units).
   Eigen::VectorXd shift;
-  /// Smallest size of the first number (in its unit, as a change from the declared value for shifts and ratios) that
-  /// these data would show in nine of ten cases at this significance; absent when no trial would do.
+  /// Smallest size of the first number (in its unit, as a change from the declared value for shifts and
+  /// ratios) that these data would show in nine of ten cases at this significance; absent when no trial would
+  /// do.
   std::optional<double> detectable;
 };
 

@@ -167,7 +167,8 @@ std::optional<SearchedStart> StartSearch::best(const Effect& effect, double riva
   const std::string stage = "where " + effect.name + " may begin";
   std::optional<SearchedStart> found;
   for (std::size_t b = 0; b < beside_.size(); ++b) {
-    // For their scores, thresholds were tried at every size with the numbers of the fit; numbers far beyond its error they do not mend.
+    // For their scores, thresholds were tried at every size with the numbers of the fit; numbers far beyond
+    // its error they do not mend.
     if (effect.trials != nullptr && (b == 0 || beside_[b].chi2 > far_beyond * beside_.front().chi2)) continue;
     for (const std::vector<double>& size : sizes(effect)) {
       if (!progress.go_on(stage)) return found;

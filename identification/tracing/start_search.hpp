@@ -13,15 +13,17 @@ struct SearchedStart {
   double chi2 = 0.0;              ///< [-], on a coarse mesh, close to that of the model itself
 };
 
-/// Starts of refits that do not depend on the fit that precedes them. A score measures the change of the curves at null, at
-/// numbers that a missing effect may have distorted. Here every effect starts from finite sizes, with the fitted numbers of
-/// the fit, as declared and of the section, and takes a few steps on a coarse mesh whose error at the fit is subtracted.
-///                                                                                          theory.md (I.34)
+/// Starts of refits that do not depend on the fit that precedes them. A score measures the change of the
+/// curves at null, at numbers that a missing effect may have distorted. Here every effect starts from finite
+/// sizes, with the fitted numbers of the fit, as declared and of the section, and takes a few steps on a
+/// coarse mesh whose error at the fit is subtracted.
+///                                                                                           theory.md (I.34)
 class StartSearch {
  public:
   StartSearch(const Model& model, const Data& data, const Fit& current);
 
-  /// The best start of an effect; none where it could not be computed from any. rival: chi2 [-] to come near to, 0: none.
+  /// The best start of an effect; none where it could not be computed from any. rival: chi2 [-] to come near
+  /// to, 0: none.
   [[nodiscard]] std::optional<SearchedStart> best(const Effect& effect, double rival,
                                                   Progress& progress) const;
 
@@ -51,8 +53,8 @@ class StartSearch {
 /// The settings of a fit at their declared values.
 [[nodiscard]] std::vector<Setting> as_declared(std::vector<Setting> settings);
 
-/// The settings with EI and EA of the declared section; empty where they have these values already, where neither is among
-/// them, or where no modulus is declared.
+/// The settings with EI and EA of the declared section; empty where they have these values already, where
+/// neither is among them, or where no modulus is declared.
 [[nodiscard]] std::vector<Setting> as_the_section_has(const Model& model, std::vector<Setting> settings);
 
 }  // namespace snare::identification

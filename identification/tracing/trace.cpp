@@ -186,7 +186,8 @@ void Tracer::tell_part() const {
   options_.reached(part);
 }
 
-// The numbers of the current fit where they began; empty where no effect among them was tried at finite sizes only.
+// The numbers of the current fit where they began; empty where no effect among them was tried at finite sizes
+// only.
 std::vector<Setting> Tracer::begun_anew() const {
   std::vector<Setting> begun;
   for (const RoundFits& round : rounds_) begun.insert(begun.end(), round.begun.begin(), round.begun.end());
@@ -232,12 +233,14 @@ void Tracer::add_effects() {
     current_ = found.better;
     rounds_.push_back(std::move(found));
     tests_ = test_residuals(model_, data_, current_);
-    // Where one cause that the catalogue does not have carries over, several effects would be rejected in the end.
+    // Where one cause that the catalogue does not have carries over, several effects would be rejected in the
+    // end.
     if (!tests_.acceptable(tolerance) && options_.attribute && one_for_several(rivals())) break;
   }
 }
 
-// Whether the model needs the effect: what chi2 rises by without it, all others refitted, against the variance that the
+// Whether the model needs the effect: what chi2 rises by without it, all others refitted, against the
+// variance that the
 // model leaves, by F, all effects that could be seen counted.                              theory.md (I.9)
 bool Tracer::needed(std::size_t which, double inflation, Fit& without) {
   std::vector<Setting> start;
@@ -279,7 +282,8 @@ void Tracer::drop_unneeded() {
 }
 
 // Whether the effects explain the residual: they leave no more than noise, and no cause that the catalogue
-// does not have is the simpler one. What the catalogue explains such a cause may explain as well: theory.md (I.8).
+// does not have is the simpler one. What the catalogue explains such a cause may explain as well: theory.md
+// (I.8).
 bool Tracer::accept() {
   if (added_.empty() || !options_.attribute || !progress_.go_on("causes outside the catalogue")) return true;
   if (serial_noise_does()) {
@@ -295,14 +299,15 @@ bool Tracer::accept() {
   return !result_.rival_explanation;
 }
 
-// Whether a stiffness of the fit exceeds that of the declared section with all of its interval, by more than moduli and diameters are
-// uncertain.
+// Whether a stiffness of the fit exceeds that of the declared section with all of its interval, by more than
+// moduli and diameters are uncertain.
 bool Tracer::beyond_section(const Fit& fit) const {
   constexpr double well_beyond = 1.05;
   return !beyond_construction(model_, numbers_of(model_, fit), well_beyond).empty();
 }
 
-// Errors below the usual tolerance are looked into only where a stiffness beyond the section may replace an effect. An effect counts
+// Errors below the usual tolerance are looked into only where a stiffness beyond the section may replace an
+// effect. An effect counts
 // only if it brings the stiffness back and leaves noise.                                  theory.md (I.9)
 void Tracer::look_for_effects() {
   const double usual = result_.tolerance;
@@ -460,7 +465,8 @@ bool Tracer::decided() const {
   return is_decided(evidence);
 }
 
-// Autocorrelated readings carry less information than independent ones: the final model is fitted again by generalised least squares,
+// Autocorrelated readings carry less information than independent ones: the final model is fitted again by
+// generalised least squares,
 // with Student's t of the effective number of readings.                                     theory.md (I.35)
 void Tracer::widen_for_serial_noise() {
   final_data_ = data_;
@@ -481,8 +487,8 @@ void Tracer::widen_for_serial_noise() {
   progress_.clock("autocorrelated noise");
 }
 
-// Whether the base model with autocorrelated noise is as likely as the model with the effects that were added. A declared noise leaves
-// no such choice.
+// Whether the base model with autocorrelated noise is as likely as the model with the effects that were
+// added. A declared noise leaves no such choice.
 bool Tracer::serial_noise_does() const {
   if (added_.empty() || data_.noise.source != "residual") return false;
   return serial_criterion(model_, data_, base_) <= serial_criterion(model_, data_, current_);
@@ -527,7 +533,8 @@ void Tracer::weigh() {
   progress_.clock("hypotheses");
 }
 
-// Intervals of the base model's numbers that hold whichever effect is the right one, and whether one is missing.
+// Intervals of the base model's numbers that hold whichever effect is the right one, and whether one is
+// missing.
 void Tracer::average_intervals() {
   if (result_.kind == VerdictKind::not_explained || result_.serial) return;
   for (std::size_t k = 0; k < base_.free; ++k) {

@@ -81,14 +81,16 @@ struct TraceOptions {
   bool attribute = true;  ///< ask the channels when the catalogue does not explain the residual
   bool intervals = true;  ///< profile likelihood of the selected effects' numbers
   std::function<bool(const std::string& stage)> progress;  ///< false stops
-  /// Asked between the points of curves with every reading; true ends the trace there: its report is `interrupted`. May be empty.
+  /// Asked between the points of curves with every reading; true ends the trace there: its report is
+  /// `interrupted`. May be empty.
   std::function<bool()> stop;
-  /// Is given the trace as it would be if it ended here, whenever more of it is whole: after the base fit, and once the final
-  /// model is chosen. Marked as interrupted. May be empty.
+  /// Is given the trace as it would be if it ended here, whenever more of it is whole: after the base fit,
+  /// and once the final model is chosen. Marked as interrupted. May be empty.
   std::function<void(const Trace& part)> reached;
 };
 
-/// Closes the loop of model and measurement: fits the declared model, tests what is left, finds the effect or the class
+/// Closes the loop of model and measurement: fits the declared model, tests what is left, finds the effect or
+/// the class
 /// of effects that the model lacks, adds it, one at a time.                           theory.md (I.1)-(I.7)
 /// Throws base::InputError for series that cannot be traced (no readings, fewer than the numbers to fit, all
 /// forces equal, never in contact).

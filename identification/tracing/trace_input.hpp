@@ -10,16 +10,18 @@
 namespace snare::identification {
 
 /// Replaces readings that were never published by the law itself at its travels. Only its four numbers count
-/// (Noise::published), so that a curve may leave the parabola as the readings did. Returns whether there was any.
+/// (Noise::published), so that a curve may leave the parabola as the readings did. Returns whether there was
+/// any.
 [[nodiscard]] bool replace_laws(std::vector<Series>& series);
 
-/// Refuses series that cannot be traced: without readings, with the same force throughout, with forces that do not
-/// follow the travel. Throws base::InputError naming them all. heldout: one a series; these need only readings.
+/// Refuses series that cannot be traced: without readings, with the same force throughout, with forces that
+/// do not follow the travel. Throws base::InputError naming them all. heldout: one a series; these need only
+/// readings.
 void check_readings(const std::filesystem::path& file, const std::vector<Series>& series,
                     const std::vector<bool>& heldout);
 
-/// What is traced: the experiment with laws replaced by readings, divided into fitted and held-out series. Refuses what
-/// check_readings() refuses.
+/// What is traced: the experiment with laws replaced by readings, divided into fitted and held-out series.
+/// Refuses what check_readings() refuses.
 struct Division {
   explicit Division(const Experiment& experiment);
 

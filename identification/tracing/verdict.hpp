@@ -14,7 +14,8 @@ enum class VerdictKind {
   explained,         ///< the base model with the selected effects does
   partly_explained,  ///< the selected effects carry nearly all; what is left is small and said
   not_explained,
-  cannot_tell  ///< the base model leaves noise only, but the readings do not determine its numbers: theory.md (I.32)
+  /// the base model leaves noise only, but the readings do not determine its numbers: theory.md (I.32)
+  cannot_tell
 };
 [[nodiscard]] std::string to_string(VerdictKind kind);
 
@@ -29,7 +30,8 @@ struct Remaining {
 /// Limits of a partial answer: 2 % of the excess, and 3 % of the largest force with 95 % confidence.
 inline constexpr double most_share_left = 0.02;
 inline constexpr double most_force_left = 0.03;
-/// Share of the largest force that may hide in the noise, with 95 % confidence, where nothing is said to be missing.
+/// Share of the largest force that may hide in the noise, with 95 % confidence, where nothing is said to be
+/// missing.
 inline constexpr double most_hidden = 0.05;
 /// Share of the largest force below which nothing is called missing, unless the file says otherwise.
 inline constexpr double usual_tolerance = 0.01;
@@ -37,13 +39,13 @@ inline constexpr double usual_tolerance = 0.01;
 /// Largest measured force of the fitted readings, either sign [N].
 [[nodiscard]] double peak_force(const Data& data);
 
-/// The tolerance [N]: the file's share of the peak force, else the usual one; none where every series declares how good
-/// its readings are, since what they show then is what the file asks for.
+/// The tolerance [N]: the file's share of the peak force, else the usual one; none where every series
+/// declares how good its readings are, since what they show then is what the file asks for.
 [[nodiscard]] double model_tolerance(const Experiment& experiment, const Data& data);
 
-/// EA and EI whose whole interval is beyond `factor` times those of a solid round section of the declared diameter and modulus.
-/// `sure` beyond 1.5 times: a diameter 6 % larger and a modulus 10 % higher give EI 1.4 times as large. Nothing where the modulus
-/// is not declared.
+/// EA and EI whose whole interval is beyond `factor` times those of a solid round section of the declared
+/// diameter and modulus. `sure` beyond 1.5 times: a diameter 6 % larger and a modulus 10 % higher give EI 1.4
+/// times as large. Nothing where the modulus is not declared.
 [[nodiscard]] std::vector<Finding> beyond_construction(const Model& model,
                                                        const std::vector<FittedNumber>& numbers,
                                                        double factor = 1.0);
@@ -54,8 +56,9 @@ inline constexpr double usual_tolerance = 0.01;
 /// Whether what is left is small enough for a partial answer: both limits above. peak: largest force [N].
 [[nodiscard]] bool is_partial(const Remainder& base, const Remainder& final, double peak);
 
-/// Whether an effect lowers the error enough to be named, where a size is asked for: by more than a tenth, and by more than
-/// the tolerance. before, after: the error; fall: of it or of what is left beside the noise; tolerance, all [N].
+/// Whether an effect lowers the error enough to be named, where a size is asked for: by more than a tenth,
+/// and by more than the tolerance. before, after: the error; fall: of it or of what is left beside the noise;
+/// tolerance, all [N].
 [[nodiscard]] bool worth_a_name(double before, double after, double fall, double tolerance);
 
 /// Whether every class has one member: no effect has a rival that the readings cannot tell from it.
@@ -74,8 +77,8 @@ struct Evidence {
   /// Errors of conditions left out [N]: of the base model, then with one selected effect after the other.
   std::vector<double> left_out{};
 };
-/// Classes of one member, five degrees of freedom, nothing left that speaks against it, and conditions left out that every effect
-/// predicts better.
+/// Classes of one member, five degrees of freedom, nothing left that speaks against it, and conditions left
+/// out that every effect predicts better.
 [[nodiscard]] bool is_decided(const Evidence& evidence);
 
 }  // namespace snare::identification

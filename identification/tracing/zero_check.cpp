@@ -41,7 +41,8 @@ void compare(const Model& model, const Fit& without, const Fit& with, ZeroCheck&
   result.doubtful = result.p < asked && largest > worthwhile;
 }
 
-/// Of the weighed forces by one number more, without what the fitted ones account for; nothing where the model fails.
+/// Of the weighed forces by one number more, without what the fitted ones account for; nothing where the
+/// model fails.
 std::optional<Eigen::VectorXd> column_beside(const Model& model, const Data& data, const Fit& fit,
                                              const Parameter& number) {
   const Evaluation at = model.evaluate(fit.settings, {&number});

@@ -18,7 +18,8 @@ struct ArmPose {
   Eigen::VectorXd angles;  ///< of the elastic joints [rad]
 };
 
-/// An arm as its file tells it: URDF for the bodies, TOML for what URDF cannot say.              docs/arm_files.md
+/// An arm as its file tells it: URDF for the bodies, TOML for what URDF cannot say.
+/// docs/arm_files.md
 struct ArmDescription {
   std::string title, source;
   std::filesystem::path file;
@@ -34,7 +35,8 @@ struct ArmDescription {
 
   /// Angles of the moving joints with those of the flexures, which are zero, behind them [rad].
   [[nodiscard]] Eigen::VectorXd with_flexures(const Eigen::VectorXd& angles) const;
-  /// Coordinates (tree.coordinates()) [rad, m, -] with the elastic joints at the given angles [rad]; a free base at the origin.
+  /// Coordinates (tree.coordinates()) [rad, m, -] with the elastic joints at the given angles [rad]; a free
+  /// base at the origin.
   [[nodiscard]] Eigen::VectorXd coordinates(const Eigen::VectorXd& angles) const;
 };
 
@@ -45,7 +47,8 @@ struct ArmDescription {
 [[nodiscard]] ArmDescription parse_arm(const std::filesystem::path& file, const std::string& text,
                                        const std::vector<base::Override>& overrides = {});
 
-/// Length of the longest straight line from the first moving joint of the arm to the tip: the sum of the offsets [m].
+/// Length of the longest straight line from the first moving joint of the arm to the tip: the sum of the
+/// offsets [m].
 [[nodiscard]] double reach(const ArmDescription& description);
 
 }  // namespace snare::multibody

@@ -364,7 +364,8 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
 }
 
 void ElasticArmPart::add_load_derivatives(double time, std::vector<double>& values) {
-  // The loads keep their directions in the world; the derivatives above let them turn with the bodies. theory.md (A.8)
+  // The loads keep their directions in the world; the derivatives above let them turn with the bodies.
+  //                                                                                           theory.md (A.8)
   const Tree& tree = arm_.tree;
   for (const TimedLoad& load : loads_) {
     const double share = load.share(inside(time));
@@ -381,8 +382,8 @@ void ElasticArmPart::add_load_derivatives(double time, std::vector<double>& valu
         derivatives_.position(i, j) += J.col(i).head<3>().dot(turned_M) + J.col(i).tail<3>().dot(turned_F);
       }
     }
-    // Change of the frame's motion J v along axis j: d(J_j)/dt, less J [v, e_j] where velocities are no rates of
-    // coordinates, and with the turn of the angular velocity by the axis.
+    // Change of the frame's motion J v along axis j: d(J_j)/dt, less J [v, e_j] where velocities are no rates
+    // of coordinates, and with the turn of the angular velocity by the axis.
     for (const TreeBody& body : tree.bodies()) {
       for (int l = 0; l < body.velocities(); ++l) {
         const int j = body.v_index + l;

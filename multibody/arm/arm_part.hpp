@@ -23,7 +23,7 @@ struct TimedLoad {
   [[nodiscard]] double share(double time) const;  ///< of the peak [-]
 };
 
-/// What a joint is doing; its equations are smooth as long as that stays.                          theory.md (A.14)
+/// What a joint is doing; its equations are smooth as long as that stays.                    theory.md (A.14)
 struct JointMode {
   int branch = 0;     ///< of the spring's law
   int turning = 1;    ///< direction of dry friction; 0: the motor sticks
@@ -50,7 +50,8 @@ struct ArmWork {
 /// How the motion of a free body that carries all others is written.
 enum class BaseEquations {
   newton_euler,  ///< balance of forces on it; other parts may add theirs to its rows
-  /// momentum as an unknown, h' = loads; the base follows from h = P(q, v). Keeps h exactly.  theory.md (A.16)
+  /// momentum as an unknown, h' = loads; the base follows from h = P(q, v). Keeps h exactly.
+  ///                                                                                         theory.md (A.16)
   momentum
 };
 /// `momentum` for a tree on one free body without gravity, else `newton_euler`.
@@ -69,10 +70,10 @@ struct ArmTolerances {
 ///   q' - N(q) v = 0,   ID(q, v, v', loads) + tau = 0 in a joint's row,   qm' - (qm') = 0,
 ///   Im qm'' + losses - tau - drive = 0, or qm'' = 0 where the motor stands, or qm' = r' on a course,
 ///   works' - powers = 0
-/// tau: torque of a joint's spring with its damper on the motor. Other parts attach to a frame of the arm: `velocities`
-/// is also the first row of the equations of motion, to which -J^T F is added for a wrench F with the frame's Jacobian of
-/// kinematics.hpp, and `coordinates`/`velocities` pick the unknowns.
-/// Unknowns y of the whole run and their rates in SI units, times in s.
+/// tau: torque of a joint's spring with its damper on the motor. Other parts attach to a frame of the arm:
+/// `velocities` is also the first row of the equations of motion, to which -J^T F is added for a wrench F
+/// with the frame's Jacobian of kinematics.hpp, and `coordinates`/`velocities` pick the unknowns. Unknowns y
+/// of the whole run and their rates in SI units, times in s.
 class ElasticArmPart : public numerics::DaePart {
  public:
   /// The arm stays the caller's and outlives the part.
@@ -93,7 +94,8 @@ class ElasticArmPart : public numerics::DaePart {
 
   /// Modes that fit a state; at rest a joint with dry friction sticks when it can.
   void settle(double time, numerics::VectorView y);
-  /// Enters the modes behind the given events (index as in `events`); a motor that sticks is at rest from here on.
+  /// Enters the modes behind the given events (index as in `events`); a motor that sticks is at rest from
+  /// here on.
   void leave_modes(double time, Eigen::Ref<Eigen::VectorXd> y, const std::vector<int>& ended_modes);
   [[nodiscard]] const std::vector<JointMode>& modes() const { return modes_; }
 
@@ -109,7 +111,8 @@ class ElasticArmPart : public numerics::DaePart {
   [[nodiscard]] ArmWork work(numerics::VectorView y) const;
   /// y' that belongs to y in the present modes, by forward dynamics.
   void write_rate(double time, numerics::VectorView y, Eigen::Ref<Eigen::VectorXd> rate);
-  /// The rates that annul the rows of a residual at vanishing y' (of this part and of all that add to its rows).
+  /// The rates that annul the rows of a residual at vanishing y' (of this part and of all that add to its
+  /// rows).
   void solve_rates(double time, numerics::VectorView y, numerics::VectorView rows,
                    Eigen::Ref<Eigen::VectorXd> rate);
   /// Torque of a joint's spring with its damper on the motor [N m].
@@ -117,18 +120,22 @@ class ElasticArmPart : public numerics::DaePart {
   /// Torque of a drive [N m].
   [[nodiscard]] double drive_torque(double time, numerics::VectorView y, int joint) const;
 
-  /// The last event is the torque of this joint reaching this size; a negative joint: never. Torque [N m], > 0.
+  /// The last event is the torque of this joint reaching this size; a negative joint: never. Torque [N m], >
+  /// 0.
   void watch_torque(int joint, double torque);
   [[nodiscard]] int torque_event() const { return events_per_joint * arm_.motors(); }
 
-  /// The integration stays within this time until told again: what jumps at its ends has its inner value there. Times [s].
+  /// The integration stays within this time until told again: what jumps at its ends has its inner value
+  /// there. Times [s].
   void enter_interval(double begin, double end);
-  /// The first time behind a time that the integration must stop at, an end of a course or of a load; infinity where there is none.
+  /// The first time behind a time that the integration must stop at, an end of a course or of a load;
+  /// infinity where there is none.
   [[nodiscard]] double next_break(double time) const;
 
   /// The arm whose equations these are.
   [[nodiscard]] const ElasticArm& arm() const { return arm_; }
-  /// Poses and velocities of the tree at y. Kept until another y is asked for: many frames of an arm are asked for at one.
+  /// Poses and velocities of the tree at y. Kept until another y is asked for: many frames of an arm are
+  /// asked for at one.
   [[nodiscard]] const Kinematics& kinematics(numerics::VectorView y) const;
 
   [[nodiscard]] int coordinates() const { return q_; }  ///< first of the coordinates
@@ -141,8 +148,8 @@ class ElasticArmPart : public numerics::DaePart {
   }
 
  private:
-  /// Slots of the entries that a joint's torques add, by rows; columns: its coordinate and velocity, the motor's angle
-  /// and rate; -1: none.
+  /// Slots of the entries that a joint's torques add, by rows; columns: its coordinate and velocity, the
+  /// motor's angle and rate; -1: none.
   struct JointSlots {
     struct Row {
       int q = -1, v = -1, angle = -1, rate = -1;

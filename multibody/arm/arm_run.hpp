@@ -51,7 +51,7 @@ struct ArmHistory {
   std::vector<ArmEvent> events;
   numerics::IdaReport report;
   numerics::IdaStatistics statistics;
-  /// Largest |E - E0 - works + losses| over the largest of |E|, works and losses [-].            theory.md (A.15)
+  /// Largest |E - E0 - works + losses| over the largest of |E|, works and losses [-].        theory.md (A.15)
   double energy_error = 0.0;
 };
 

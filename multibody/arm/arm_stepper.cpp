@@ -10,8 +10,8 @@ namespace {
 
 using base::at;
 
-// An event function below this is over without an event: of functions that are scaled to one, far above the accuracy of
-// a found event.
+// An event function below this is over without an event: of functions that are scaled to one, far above the
+// accuracy of a found event.
 constexpr double beyond = -1e-9;
 
 }  // namespace

@@ -24,18 +24,22 @@ enum class DampingRate {
   motor        ///< qm': a loss of the motor, as Spong's D stands in the equations
 };
 
-/// Torque of an elastic joint as an odd, piecewise linear function of the deflection q - qm.        theory.md (A.10)
+/// Torque of an elastic joint as an odd, piecewise linear function of the deflection q - qm.
+///                                                                                           theory.md (A.10)
 ///
 ///   continuous: T = sgn(d) (T_i + k_i (|d| - a_i)),   T_i the torque at the beginning a_i of the piece
 ///   literal:    T = k_i d
-/// Both come from a continuous energy. One piece is a linear joint; a first piece without stiffness is backlash.
-/// With a width of the jumps, torque and damping go linearly from a_i - width/2 to a_i + width/2 where either would
+/// Both come from a continuous energy. One piece is a linear joint; a first piece without stiffness is
+/// backlash. With a width of the jumps, torque and damping go linearly from a_i - width/2 to a_i + width/2
+/// where either would
 /// jump: both are then continuous, and a load between the torques on the two sides finds its place inside.
-/// A branch is a piece with the sign of the deflection, -n..n; branch 0 is the piece around zero. The functions of
-/// a branch are smooth and go on beyond its ends, so that an integrator can find where it is left.
+/// A branch is a piece with the sign of the deflection, -n..n; branch 0 is the piece around zero. The
+/// functions of a branch are smooth and go on beyond its ends, so that an integrator can find where it is
+/// left.
 class DeflectionLaw {
  public:
-  /// At least one piece, from 0 on, increasing. jump_width [rad], >= 0 and less than any piece; 0: jumps stay jumps.
+  /// At least one piece, from 0 on, increasing. jump_width [rad], >= 0 and less than any piece; 0: jumps stay
+  /// jumps.
   /// Throws std::invalid_argument.
   explicit DeflectionLaw(std::vector<DeflectionPiece> pieces,
                          StiffnessReading reading = StiffnessReading::continuous,

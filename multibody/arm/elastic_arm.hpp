@@ -13,7 +13,7 @@
 
 namespace snare::multibody {
 
-/// A motor that turns a joint through an elastic gear; all of it on the output side.           theory.md (A.9)
+/// A motor that turns a joint through an elastic gear; all of it on the output side.          theory.md (A.9)
 struct ElasticJoint {
   std::string name;
   std::string
@@ -26,11 +26,12 @@ struct ElasticJoint {
   bool flexure = false;     ///< a link that bends: the motor stands for what holds the hinge, and never moves
 };
 
-/// A manipulator whose joints are elastic, in the two-mass form of Spong 1987. Constants only.   theory.md (A.9)
+/// A manipulator whose joints are elastic, in the two-mass form of Spong 1987. Constants only.
+///                                                                                            theory.md (A.9)
 ///
 ///   H(q) q'' + c(q, q') + T(q - qm, .) = J^T F         B qm'' + D qm' + friction - T = tau
-/// Joints without an entry swing freely (a free base among them). The turning of the rotors with the links is left
-/// out, as
+/// Joints without an entry swing freely (a free base among them). The turning of the rotors with the links is
+/// left out, as
 /// there: the inertia of a rotor counts against its own link only.
 struct ElasticArm {
   Tree tree;
@@ -61,9 +62,12 @@ struct ArmMode {
   Eigen::VectorXd shape;   ///< of (v, qm), H-normal
 };
 
-/// Modes with the springs' stiffness at the given deflections (0: the law's first piece), without damping, friction and
-/// velocities:  (K - (2 pi f)^2 M) x = 0, M = diag(H, B), of the free and servo-held motors.         theory.md (A.13)
-/// Modes of no stiffness come out with frequency 0. Ascending. Motors that are locked do not take part. q [rad, m, -], deflections [rad].
+/// Modes with the springs' stiffness at the given deflections (0: the law's first piece), without damping,
+/// friction and
+/// velocities:  (K - (2 pi f)^2 M) x = 0, M = diag(H, B), of the free and servo-held motors.
+///                                                                                           theory.md (A.13)
+/// Modes of no stiffness come out with frequency 0. Ascending. Motors that are locked do not take part. q
+/// [rad, m, -], deflections [rad].
 [[nodiscard]] std::vector<ArmMode> natural_modes(const ElasticArm& arm, const Eigen::VectorXd& q,
                                                  const std::vector<Drive>& drives,
                                                  const Eigen::VectorXd& deflections = {});

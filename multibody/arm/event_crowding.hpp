@@ -9,8 +9,9 @@
 
 namespace snare::multibody {
 
-/// Notices events that crowd: between torques that point at a jump of its law from both sides a joint ends its motion at the
-/// jump, which no sequence of modes describes. A swing passes a jump some tens of times a second at most.
+/// Notices events that crowd: between torques that point at a jump of its law from both sides a joint ends
+/// its motion at the jump, which no sequence of modes describes. A swing passes a jump some tens of times a
+/// second at most.
 class EventCrowding {
  public:
   explicit EventCrowding(int joints) : times_(static_cast<std::size_t>(joints)) {}

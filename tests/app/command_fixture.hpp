@@ -63,7 +63,8 @@ class CommandFixture : public test::FolderFixture {
     }
     return false;
   }
-  /// Sends a signal a time [s] after it is caught, and waits. SIGKILL, which nobody catches, goes a time after the call.
+  /// Sends a signal a time [s] after it is caught, and waits. SIGKILL, which nobody catches, goes a time
+  /// after the call.
   [[nodiscard]] static Ending interrupt(pid_t child, double after, int signal = SIGINT) {
     constexpr int most_looks = 2000;
     for (int k = 0; k < most_looks && signal != SIGKILL && !catches(child, signal); ++k)

@@ -26,7 +26,8 @@ class CrashNoteTest : public test::FolderFixture {
  protected:
   [[nodiscard]] std::filesystem::path file() const { return folder_ / "cases.journal"; }
 
-  /// A process of its own in which case 3 is run by a second thread after case 5 has ended; the signal by which it ends.
+  /// A process of its own in which case 3 is run by a second thread after case 5 has ended; the signal by
+  /// which it ends.
   [[nodiscard]] int ending(const std::function<void()>& one_case) const {
     const pid_t child = ::fork();
     if (child == 0) {

@@ -1,4 +1,5 @@
-// The verbs distil and compare as their users see them: files, exports that compile alone and agree, resuming.
+// The verbs distil and compare as their users see them: files, exports that compile alone and agree,
+// resuming.
 
 #include "coupling/contact/force_table.hpp"
 #include "tests/app/command_fixture.hpp"
@@ -30,7 +31,8 @@ positions_mm = [40.0, 52.5]
 class DistilCommand : public CommandFixture {
  protected:
   void SetUp() override { std::ofstream(folder_ / "w.toml") << wire_text; }
-  /// Runs o/run.cpp, run.c and run.py with the exports beside them; what they print goes to o/cpp.txt, c.txt and py.txt.
+  /// Runs o/run.cpp, run.c and run.py with the exports beside them; what they print goes to o/cpp.txt, c.txt
+  /// and py.txt.
   void run_exports() const {
     ASSERT_EQ(
         shell("cd o && g++ -std=c++17 -Wall -Wextra -Werror -O1 run.cpp -o run_cpp && ./run_cpp > cpp.txt"),
@@ -63,7 +65,8 @@ double library_force(const json& table, double d, double s, double e) {
   return rebuilt.force(d, s, e);
 }
 
-// The exports compile and run alone, and say what the library says: to 1e-12 of the force, some hundred roundings.
+// The exports compile and run alone, and say what the library says: to 1e-12 of the force, some hundred
+// roundings.
 TEST_F(DistilCommand, ExportsAgreeWithTheLibrary) {
   ASSERT_EQ(run("distil w.toml --out o --quiet"), 0) << contents("err.txt");
   const json law = parsed("o/law.json");

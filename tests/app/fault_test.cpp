@@ -55,8 +55,9 @@ class Faults : public CommandFixture {
       EXPECT_EQ(text, whole.at(name));
   }
 
-  /// The call that this run makes for the `at`-th time fails; false where it makes none. `spared`: a file whose failure costs its
-  /// own use only; `kept`: one that grows, in which everything up to the failure may stand.
+  /// The call that this run makes for the `at`-th time fails; false where it makes none. `spared`: a file
+  /// whose failure costs its own use only; `kept`: one that grows, in which everything up to the failure may
+  /// stand.
   bool expect_promise(const std::string& call, int at, const std::string& arguments, const Files& whole,
                       const std::string& spared, const std::string& kept) {
     SCOPED_TRACE(call + " " + std::to_string(at));
@@ -138,8 +139,8 @@ TEST_F(Faults, Push) {
   expect_promises("push x.toml --quiet");
 }
 
-// A journal of curves that cannot be written costs the way back to them, not the run. Of each kind the call that is the journal's
-// first (the wire file is closed before); all calls of all kinds would take minutes.
+// A journal of curves that cannot be written costs the way back to them, not the run. Of each kind the call
+// that is the journal's first (the wire file is closed before); all calls of all kinds would take minutes.
 TEST_F(Faults, DistilGoesOnWithoutAJournal) {
   const std::string distil = "distil '" SNARE_SOURCE_DIR "/tests/ranges/wire.toml' --quiet";
   ASSERT_EQ(run(distil + " --out whole"), 0) << contents("err.txt");

@@ -1,4 +1,5 @@
-// Every verb answers SIGINT and SIGTERM within a second, at every stage, with status 3, and what it leaves is marked as a part.
+// Every verb answers SIGINT and SIGTERM within a second, at every stage, with status 3, and what it leaves is
+// marked as a part.
 
 #include "tests/app/command_fixture.hpp"
 #include "tests/support/wire_text.hpp"

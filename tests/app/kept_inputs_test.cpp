@@ -153,8 +153,8 @@ TEST_F(KeptInputs, OutOnAFileIsWrongInput) {
   EXPECT_EQ(contents("file"), "in the way");
 }
 
-// Full, closed and without a reader: errors and progress are lost, results are not; a result that is asked for on standard output fails
-// where that takes nothing.
+// Full, closed and without a reader: errors and progress are lost, results are not; a result that is asked
+// for on standard output fails where that takes nothing.
 TEST_F(KeptInputs, StandardStreams) {
   const std::string command = "'" SNARE_COMMAND "' ";
   ASSERT_EQ(run("sweep in/sweep.toml --out whole"), 0) << contents("err.txt");

@@ -25,8 +25,8 @@ class SimulateCommand : public CommandFixture {
   [[nodiscard]] json summary() const { return parsed("out/summary.json"); }
 };
 
-// The paper's statement of its air table (Abiko et al., section 4.3): the target starts to turn, the law misses the peak
-// force and keeps the impulse; then the velocity is constant.
+// The paper's statement of its air table (Abiko et al., section 4.3): the target starts to turn, the law
+// misses the peak force and keeps the impulse; then the velocity is constant.
 TEST_F(SimulateCommand, AirTable) {
   const std::string shorter = "--set duration_s=0.25 --set wires[wire].elements=32 ";
   ASSERT_EQ(run("air_table.toml", shorter + "--set output.paraview=true"), 0) << contents("log.txt");
@@ -40,7 +40,8 @@ TEST_F(SimulateCommand, AirTable) {
               1e-6);
   EXPECT_LT(std::abs(s["momentum_error_Ns"][1].get<double>()), 1e-6);
   EXPECT_LT(std::abs(s["angular_momentum_error_Nms"][2].get<double>()), 1e-6);
-  // The energy of the impact is 0.0445 J; the integrator's own error is within a thousandth of it at default tolerances.
+  // The energy of the impact is 0.0445 J; the integrator's own error is within a thousandth of it at default
+  // tolerances.
   EXPECT_LT(std::abs(s["energy_J"]["integrator"].get<double>()), 1e-3 * 0.0445);
   EXPECT_LT(s["largest_penetration_m"].get<double>(), 1e-6);
   EXPECT_NE(contents("out/history.csv").find("probe on wire normal_N"), std::string::npos);
@@ -91,7 +92,8 @@ model = "stretched"
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
-// What sensors read stands in telemetry.csv; the summary has its least, largest and last, and what the joints bore.
+// What sensors read stands in telemetry.csv; the summary has its least, largest and last, and what the joints
+// bore.
 TEST_F(SimulateCommand, TellsWhatSensorsReadAndJointsBore) {
   ASSERT_EQ(run("ssrms_rigidize.toml", "--set duration_s=0.5"), 0) << contents("log.txt");
   const json s = summary();
@@ -157,7 +159,8 @@ TEST_F(SimulateCommand, PayloadMeetsTheWireInAnEndEffector) {
   }
 }
 
-// The buckled wire's bending alone, E d/2 times some 12/m, is more than 100 N on its section: the run ends at its first step.
+// The buckled wire's bending alone, E d/2 times some 12/m, is more than 100 N on its section: the run ends at
+// its first step.
 TEST_F(SimulateCommand, AWireThatReachesItsStrengthEndsTheRunAndKeepsWhatItReached) {
   const std::string strength =
       "--set duration_s=0.01 --set wires[wire].elements=32 --set wires[wire].strength_N=100";
@@ -191,8 +194,8 @@ TEST_F(SimulateCommand, GrappleShaftBetweenWires) {
   EXPECT_EQ(s["contacts"][1]["touches"].get<int>(), 0);
   ASSERT_FALSE(s["events"].empty());
   EXPECT_EQ(s["events"][0]["contact"], "shaft on lower");
-  // The bulge of 18.88 mm, half a cosine high, at the 6 mm that the shaft has drifted aside, less shaft and wire radius, at 0.1 m/s; slope and
-  // extension of the wire move that by less than 0.1 mm.
+  // The bulge of 18.88 mm, half a cosine high, at the 6 mm that the shaft has drifted aside, less shaft and
+  // wire radius, at 0.1 m/s; slope and extension of the wire move that by less than 0.1 mm.
   const double bulge = 18.88e-3 * 0.5 * (1.0 + std::cos(2.0 * std::acos(-1.0) * 6.0 / 175.0));
   EXPECT_NEAR(s["events"][0]["time_s"].get<double>(), (bulge - 6.75e-3) / 0.1, 1e-3);
   EXPECT_LT(s["largest_penetration_m"].get<double>(), 1e-6);
@@ -280,7 +283,8 @@ TEST_F(SimulateCommand, JointStepSwingsSlowerAsItDies) {
   EXPECT_NE(contents("out/report.html").find("Swings of the joint"), std::string::npos);
 }
 
-// Joint 3 stands at 80 deg of the pose plus the step of 0.5 deg: the table shows what the files say, not 80.49999999999999.
+// Joint 3 stands at 80 deg of the pose plus the step of 0.5 deg: the table shows what the files say, not
+// 80.49999999999999.
 TEST_F(SimulateCommand, AnglesOfTheFilesHaveNoTailInTheHistory) {
   ASSERT_EQ(run("jemrms_step.toml", "--set duration_s=1"), 0) << contents("log.txt");
   std::istringstream history(contents("out/history.csv"));

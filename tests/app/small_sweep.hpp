@@ -22,7 +22,8 @@ points = 2
 elements = 16
 )";
 
-  /// `shortest_mm`: of the wires, 175 mm are those between the mounts; `sigma_mm`: of the diameters about 1.5 mm; `more`: tables after [collect].
+  /// `shortest_mm`: of the wires, 175 mm are those between the mounts; `sigma_mm`: of the diameters about 1.5
+  /// mm; `more`: tables after [collect].
   SmallSweep(const std::string& shortest_mm, const std::string& sigma_mm, const std::string& more)
       : sweep(R"(schema = "snare-sweep/1"
 title = "pushes"

@@ -40,7 +40,8 @@ TEST_F(SweepCommand, SameBytesForAnyNumberOfThreads) {
   const nlohmann::json summary = parsed("a/summary.json");
   EXPECT_EQ(summary["finished"], 60);
   EXPECT_EQ(summary["interrupted"], false);
-  // A wire that is shorter than its span is a case of its own kind: whatever it comes to, it does so by itself.
+  // A wire that is shorter than its span is a case of its own kind: whatever it comes to, it does so by
+  // itself.
   EXPECT_EQ(summary["limits"]["force > 50"]["cases"], summary["statuses"]["done"]);
   EXPECT_TRUE(exists("a/report.html"));
 }
@@ -99,11 +100,13 @@ TEST_F(SweepCommand, GoesOnAfterAnInterruption) {
   EXPECT_EQ(cases("a"), cases("whole"));
 }
 
-// A case that ends the process costs itself, once: what is finished is kept, and the same command goes on with the others.
+// A case that ends the process costs itself, once: what is finished is kept, and the same command goes on
+// with the others.
 TEST_F(SweepCommand, ACaseThatEndsTheProcessIsNotRunAgain) {
   const std::string many = " --threads 1 --set cases=600";
   ASSERT_EQ(run("sweep sweep.toml --out whole" + many), 0);
-  // A signal from outside may come between two cases, and is then no case's fault: the next try goes on from there.
+  // A signal from outside may come between two cases, and is then no case's fault: the next try goes on from
+  // there.
   std::string said;
   for (int tries = 0; tries < 10 && said.find(" ended the process by SIGSEGV") == std::string::npos;
        ++tries) {
@@ -154,7 +157,8 @@ TEST_F(SweepCommand, TwoSweepsDoNotShareAFolder) {
   static_cast<void>(interrupt(child, 0.0, SIGKILL));
 }
 
-// A limit of the file's size stands for a disk that is full: the journal ends with a whole line, and the sweep goes on with room.
+// A limit of the file's size stands for a disk that is full: the journal ends with a whole line, and the
+// sweep goes on with room.
 TEST_F(SweepCommand, AFullDiskKeepsWhatIsFinished) {
   ASSERT_EQ(run("sweep sweep.toml --out whole --set cases=300"), 0);
   EXPECT_EQ(
@@ -168,7 +172,8 @@ TEST_F(SweepCommand, AFullDiskKeepsWhatIsFinished) {
   EXPECT_EQ(cases("a"), cases("whole"));
 }
 
-// A fit of records is a case, too: the one that begins where the record did has its damping, the others are off and say so.
+// A fit of records is a case, too: the one that begins where the record did has its damping, the others are
+// off and say so.
 TEST_F(SweepCommand, RecordsAreCases) {
   write("records.toml", R"(schema = "snare-sweep/1"
 title = "where the swing began"
@@ -227,7 +232,8 @@ std::map<int, std::vector<std::string>> rows_of(const std::string& csv) {
   return rows;
 }
 
-// A refined grid against the same grid without refinement: what was run is equal, what is inferred is as near as was asked for.
+// A refined grid against the same grid without refinement: what was run is equal, what is inferred is as near
+// as was asked for.
 TEST_F(SweepCommand, ARefinedGrid) {
   const auto grid = [](const std::string& more) {
     return R"(schema = "snare-sweep/1"

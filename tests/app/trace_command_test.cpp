@@ -18,7 +18,8 @@ using nlohmann::json;
 
 class TraceCommand : public CommandFixture {
  protected:
-  /// A short experiment whose readings are the computed curve of the declared wire, plus what `change` makes of it.
+  /// A short experiment whose readings are the computed curve of the declared wire, plus what `change` makes
+  /// of it.
   void make_experiment(double (*change)(double displacement_mm, double force)) const {
     std::string text = R"(schema = "snare-experiment/1"
 title = "short"

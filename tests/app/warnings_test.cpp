@@ -97,7 +97,8 @@ TEST_F(Warnings, AFitOfWhatCannotBe) {
   EXPECT_NE(contents("here/report.html").find("Warning: fitted model"), std::string::npos);
 }
 
-// An integrator that loses more than 1 % of the exchanged energy is reported: backward Euler at coarse tolerances damps a swing.
+// An integrator that loses more than 1 % of the exchanged energy is reported: backward Euler at coarse
+// tolerances damps a swing.
 TEST_F(Warnings, AMotionThatLosesEnergy) {
   write("x.toml", R"(schema = "snare-scenario/2"
 title = "a body on springs"

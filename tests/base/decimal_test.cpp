@@ -8,7 +8,8 @@
 namespace snare::base {
 namespace {
 
-// Lengths and spans in hundredths of a millimetre: their difference in binary is not the decimal one in about half of all cases.
+// Lengths and spans in hundredths of a millimetre: their difference in binary is not the decimal one in about
+// half of all cases.
 TEST(Decimal, DifferencesOfDecimalNumbersAreTheDecimalOnes) {
   std::mt19937_64 random(1);
   std::uniform_int_distribution<int> hundredths(1, 500'000);

@@ -59,8 +59,8 @@ TEST(InUnit, ANumberThatIsInTheUnitLosesItsTailAlone) {
   EXPECT_EQ(without_tail(third, mm), third);
 }
 
-// Computed numbers keep what they have: off by no more than the two round-offs of converting there and back, that is less than
-// one part in 2^51, whatever is shown; and most of them keep more than 15 digits.
+// Computed numbers keep what they have: off by no more than the two round-offs of converting there and back,
+// that is less than one part in 2^51, whatever is shown; and most of them keep more than 15 digits.
 TEST(InUnit, ComputedNumbersKeepTheirDigits) {
   std::mt19937_64 engine(3);
   std::uniform_real_distribution<double> size(-12.0, 6.0);

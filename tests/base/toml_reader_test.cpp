@@ -345,7 +345,8 @@ TEST(TomlReader, FilesThatCannotBeReadHaveTheirMessage) {
   std::filesystem::remove_all(folder);
 }
 
-// What makes no difference to results makes none to a checkpoint's input, nor does the table that it would stand in.
+// What makes no difference to results makes none to a checkpoint's input, nor does the table that it would
+// stand in.
 TEST(TomlReader, ACanonicalTextWithoutAKey) {
   const auto canonical = [](const char* text) {
     return TomlDocument("a.toml", text).canonical("solver.least_advance_s");

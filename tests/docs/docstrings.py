@@ -74,7 +74,13 @@ def heading_of(lines):
     return said
 
 
+def declaration_text(lines, start):
+    """What stands from a line to the end of its declaration, or to the body."""
+    return re.split(r"[;{]", " ".join(line.split("//")[0] for line in lines[start:start + 4]))[0].strip()
+
+
 def says_units(signature, comment, of_all):
+    comment = re.sub(r"\s*///\s*|\s+", " ", comment)
     return bool(UNIT_BRACKET.search(comment) or NUMBER_WORDS.search(comment) or ALL_WORDS.search(comment) or UNIT_SUFFIX.search(signature) or
                 any(ALL_WORDS.search(text) for text in of_all))
 
@@ -132,7 +138,7 @@ def problems_of(text):
                     yield number, name, "says no unit"
                 if match.group("type"):
                     type_name, struct_comment = match.group("type"), comment
-            elif in_class and not re.search(r"\b(override|default|delete)\b|^~|^:", code):
+            elif in_class and not re.search(r"\b(override|final|default|delete)\b|^~|^:", declaration_text(lines, number - 1)):
                 constructor = CONSTRUCTOR.match(code)
                 is_constructor = constructor and constructor.group("function") == type_name
                 if function and not is_constructor and not re.search(r"\boperator\b|^explicit", code) and not documented and not trailing:

@@ -1,5 +1,5 @@
-// Every allocation of the readers fails once: they throw std::bad_alloc (or say what is wrong with the input), leak nothing, and read
-// the same file the next time.
+// Every allocation of the readers fails once: they throw std::bad_alloc (or say what is wrong with the
+// input), leak nothing, and read the same file the next time.
 
 #include "base/files.hpp"
 #include "tests/faults/failing_new.hpp"
@@ -19,7 +19,8 @@
 namespace snare {
 namespace {
 
-/// How many allocations failed, one a call, before one call met none. stride: of readers with many, every so-many-th.
+/// How many allocations failed, one a call, before one call met none. stride: of readers with many, every
+/// so-many-th.
 long fail_each(const std::function<bool()>& read, long stride = 1) {
   constexpr long most = 1'000'000;
   for (long at = 1; at < most; at += stride) {

@@ -1,5 +1,6 @@
-// Preloaded into the command: one call of the system fails, once. SNARE_FAIL_CALL names it, SNARE_FAIL_AT counts it from 1; when it
-// fails the file SNARE_FAIL_NOTE is made. Standard streams and files that are read are left alone.
+// Preloaded into the command: one call of the system fails, once. SNARE_FAIL_CALL names it, SNARE_FAIL_AT
+// counts it from 1; when it fails the file SNARE_FAIL_NOTE is made. Standard streams and files that are read
+// are left alone.
 
 #include <dlfcn.h>
 #include <fcntl.h>

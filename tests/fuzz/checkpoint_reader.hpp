@@ -7,7 +7,8 @@
 
 namespace snare::fuzz {
 
-/// What a checkpoint holds, behind a head that is right: the checksum keeps all else out. It must be read or refused.
+/// What a checkpoint holds, behind a head that is right: the checksum keeps all else out. It must be read or
+/// refused.
 inline bool read_bytes_as_checkpoint(std::string_view bytes) {
   const std::filesystem::path file = folder_of_files() / "checkpoint.bin";
   static const std::string head = [&file] {

@@ -25,7 +25,8 @@
 
 namespace snare::fuzz {
 
-/// A folder for this process, with what the files of tests/ranges and data/scenarios name beside and above themselves.
+/// A folder for this process, with what the files of tests/ranges and data/scenarios name beside and above
+/// themselves.
 inline const std::filesystem::path& folder_of_files() {
   static const struct Folder {
     Folder() {
@@ -54,8 +55,8 @@ inline const std::filesystem::path& folder_of_files() {
   return folder.path;
 }
 
-/// Gives arbitrary bytes, as a file beside those of folder_of_files(), to `read`, which must return or throw InputError; whatever else
-/// leaves here is a defect. Whether it was accepted.
+/// Gives arbitrary bytes, as a file beside those of folder_of_files(), to `read`, which must return or throw
+/// InputError; whatever else leaves here is a defect. Whether it was accepted.
 template <class Read>
 bool read_bytes_as_file(std::string_view bytes, const char* name, const Read& read) {
   const std::filesystem::path file = folder_of_files() / name;

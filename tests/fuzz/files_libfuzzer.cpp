@@ -1,5 +1,5 @@
-// Entry point for libFuzzer: the readers that need the whole product, linked with the libraries of the optimised build. Not part of
-// the build, which uses GCC: fuzz.py builds and runs it with clang.
+// Entry point for libFuzzer: the readers that need the whole product, linked with the libraries of the
+// optimised build. Not part of the build, which uses GCC: fuzz.py builds and runs it with clang.
 
 #include "tests/fuzz/checkpoint_reader.hpp"
 #include "tests/fuzz/file_readers.hpp"

@@ -17,8 +17,8 @@
 
 namespace snare::fuzz {
 
-/// Gives arbitrary bytes to the reader of robot descriptions. It must return what is whole or throw InputError; whatever else leaves
-/// here is a defect. Whether it was accepted.
+/// Gives arbitrary bytes to the reader of robot descriptions. It must return what is whole or throw
+/// InputError; whatever else leaves here is a defect. Whether it was accepted.
 inline bool read_bytes_as_urdf(std::string_view bytes) {
   try {
     const multibody::RobotDescription robot = multibody::parse_urdf("fuzz.urdf", std::string(bytes));
@@ -57,7 +57,8 @@ inline bool read_bytes_as_mesh(std::string_view bytes, const char* ending) {
   return accepted;
 }
 
-/// The same for what a checkpoint is made of: texts, lists of lists, matrices. A size that cannot be must not be reserved.
+/// The same for what a checkpoint is made of: texts, lists of lists, matrices. A size that cannot be must not
+/// be reserved.
 inline bool read_bytes_as_archive(std::string_view bytes) {
   try {
     std::string text;

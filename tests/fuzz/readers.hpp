@@ -32,7 +32,8 @@ inline bool read_bytes_as_csv(std::string_view bytes) {
   }
 }
 
-/// The same for the reader of experiment files (and of overrides: the first line, where it starts with "--set ").
+/// The same for the reader of experiment files (and of overrides: the first line, where it starts with "--set
+/// ").
 inline bool read_bytes_as_experiment(std::string_view bytes) {
   try {
     std::vector<identification::Override> overrides;

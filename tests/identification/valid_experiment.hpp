@@ -4,7 +4,8 @@
 
 namespace snare::identification {
 
-/// An experiment file without a fault; tests spoil one passage at a time. The number of each line stands behind it.
+/// An experiment file without a fault; tests spoil one passage at a time. The number of each line stands
+/// behind it.
 inline const std::string valid_experiment =
     "schema = \"snare-experiment/1\"\n"                                                      // 1
     "title = \"a loose wire\"\n"                                                             // 2

@@ -6,8 +6,9 @@
 
 #include <gtest/gtest.h>
 
-// Against DART, which shares no code with ours. Both solve problems of order one (condition of the mass matrix up to
-// some 1e4) in double precision: 1e-10 is above what rounding leaves, and below any error of a formula.
+// Against DART, which shares no code with ours. Both solve problems of order one (condition of the mass
+// matrix up to some 1e4) in double precision: 1e-10 is above what rounding leaves, and below any error of a
+// formula.
 
 namespace snare {
 
@@ -15,7 +16,8 @@ namespace {
 
 using test::Base;
 
-/// Sum of mass times place of the bodies that move, from DART's poses. What hangs on the world is no part of our tree.
+/// Sum of mass times place of the bodies that move, from DART's poses. What hangs on the world is no part of
+/// our tree.
 Eigen::Vector3d moment_of_mass(const test::PlainTree& plain, test::DartTree& dart) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < plain.bodies.size(); ++i) {
@@ -100,7 +102,8 @@ void compare_random_trees(Base base, unsigned seed) {
 }  // namespace
 
 TEST(Dart, AgreesOnTrajectories) {
-  // The same motion twice: DART's accelerations stepped by Runge and Kutta, and our equations integrated by IDA.
+  // The same motion twice: DART's accelerations stepped by Runge and Kutta, and our equations integrated by
+  // IDA.
   for (const Base base : {Base::on_the_world, Base::floating}) {
     std::mt19937 random(31);
     test::PlainTree plain = test::random_tree(random, base);

@@ -22,8 +22,8 @@ void compare(test::Base base, unsigned seed) {
     multibody::InverseDynamicsDerivatives derivatives(tree);
     multibody::differentiate_inverse_dynamics(tree, state.q, state.v, acceleration, wrenches, derivatives);
 
-    // Differences are good to some 1e-11 of the largest entry (derivatives.hpp) where the torques are of order one;
-    // they reach a hundred here.
+    // Differences are good to some 1e-11 of the largest entry (derivatives.hpp) where the torques are of
+    // order one; they reach a hundred here.
     const auto by_motion = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
       return multibody::inverse_dynamics(tree, test::moved(tree, state.q, x, 1.0), state.v, acceleration,
                                          wrenches, workspace);

@@ -22,7 +22,8 @@ using Eigen::VectorXd;
 
 constexpr double pi = std::numbers::pi;
 
-/// An arm of six hinges with a spherical wrist: turn, two links of 1 m and 0.8 m, wrist about x, y, x, tip 0.2 m on.
+/// An arm of six hinges with a spherical wrist: turn, two links of 1 m and 0.8 m, wrist about x, y, x, tip
+/// 0.2 m on.
 Tree six_hinges() {
   Tree tree;
   const auto point = SpatialInertia::about_centre(1.0, Vector3d::Zero(), Matrix3d::Identity());
@@ -61,7 +62,8 @@ VectorXd angles(std::initializer_list<double> list) {
   return q;
 }
 
-// Closed form of such an arm: shoulder to the left or right, elbow up or down, wrist turned over or not make eight solutions.
+// Closed form of such an arm: shoulder to the left or right, elbow up or down, wrist turned over or not make
+// eight solutions.
 TEST(InverseKinematics, FindsTheEightSolutionsOfASphericalWrist) {
   const Tree tree = six_hinges();
   const VectorXd q = angles({0.4, -0.3, 0.9, 0.5, 0.7, -0.2});

@@ -10,9 +10,9 @@
 #include <kdl/chainjnttojacsolver.hpp>
 #include <kdl/treeidsolver_recursive_newton_euler.hpp>
 
-// Against orocos-KDL, which shares no code with ours. Problems of order one in double precision: 1e-10 is above what
-// rounding leaves (the accelerations are solved with mass matrices of condition up to some 1e4), and below any error of
-// a formula.
+// Against orocos-KDL, which shares no code with ours. Problems of order one in double precision: 1e-10 is
+// above what rounding leaves (the accelerations are solved with mass matrices of condition up to some 1e4),
+// and below any error of a formula.
 
 namespace snare {
 

@@ -22,8 +22,8 @@ inline multibody::ElasticArm one_joint(double link_inertia, double motor_inertia
   return arm;
 }
 
-/// Links of 10 kg and 1 m one after another with axes z, y, x, ..., each with a motor; on the world or on a free
-/// body of 100 kg.
+/// Links of 10 kg and 1 m one after another with axes z, y, x, ..., each with a motor; on the world or on a
+/// free body of 100 kg.
 inline multibody::ElasticArm chain_arm(int links, Base base, double stiffness) {
   multibody::ElasticArm arm;
   int frame = 0;

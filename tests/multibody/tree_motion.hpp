@@ -9,7 +9,7 @@
 
 namespace snare::test {
 
-/// q' = N(q) v.                                                                                    theory.md (A.3)
+/// q' = N(q) v.                                                                               theory.md (A.3)
 inline Eigen::VectorXd coordinate_rate(const multibody::Tree& tree, const Eigen::VectorXd& q,
                                        const Eigen::VectorXd& v) {
   assert(q.size() == tree.coordinates() && v.size() == tree.velocities());
@@ -24,7 +24,8 @@ inline Eigen::VectorXd coordinate_rate(const multibody::Tree& tree, const Eigen:
   return rate;
 }
 
-/// The coordinates after the constant velocity v for a time; exact for each joint by itself. Quaternions come out unit.
+/// The coordinates after the constant velocity v for a time; exact for each joint by itself. Quaternions come
+/// out unit.
 inline Eigen::VectorXd moved(const multibody::Tree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                              double time) {
   Eigen::VectorXd next = q;

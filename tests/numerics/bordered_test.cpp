@@ -29,8 +29,8 @@ SymmetricBandMatrix free_chain(int n, double scale = 1.0) {
   return k;
 }
 
-/// Bending of a cantilever of n unit edges: second differences, 1/2 sum (w_{i+1} - 2 w_i + w_{i-1})^2, clamped at one
-/// end by w_0 = w_{-1} = 0. Definite, condition about n^4.
+/// Bending of a cantilever of n unit edges: second differences, 1/2 sum (w_{i+1} - 2 w_i + w_{i-1})^2,
+/// clamped at one end by w_0 = w_{-1} = 0. Definite, condition about n^4.
 SymmetricBandMatrix cantilever(int n) {
   SymmetricBandMatrix k(n, 2);
   const double stencil[3] = {1.0, -2.0, 1.0};
@@ -96,7 +96,8 @@ TEST(BorderedFallback, SingularBandAtAnyScale) {
 }
 
 TEST(BorderedFallback, FineDefiniteMeshStaysWithTheBlocks) {
-  // The last pivots keep about 1/n^3 of their diagonal entries: small, and the solution is right all the same.
+  // The last pivots keep about 1/n^3 of their diagonal entries: small, and the solution is right all the
+  // same.
   for (const int n : {100, 10000, 60000}) {
     BorderedSystem system;
     system.reset(n, 1);

@@ -11,7 +11,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// t^3 and 2 t^3 - t: what is extrapolated from three states is corrected by a constant divided difference of third order.
+/// t^3 and 2 t^3 - t: what is extrapolated from three states is corrected by a constant divided difference of
+/// third order.
 VectorXd cubics(double t) {
   return Eigen::Vector2d(t * t * t, 2.0 * t * t * t - t);
 }

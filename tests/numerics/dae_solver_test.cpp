@@ -14,8 +14,8 @@
 namespace snare::numerics {
 namespace {
 
-/// A chain of n places 0 ... n-1 and their rates n ... 2n-1 with rows c x - v and banded balances, and two unknowns that are
-/// coupled with the middle of the chain.
+/// A chain of n places 0 ... n-1 and their rates n ... 2n-1 with rows c x - v and banded balances, and two
+/// unknowns that are coupled with the middle of the chain.
 SparseMatrix chain(int n, double diagonal, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -63,9 +63,9 @@ TEST(DaeSolver, GivesTheDenseSolution) {
   EXPECT_EQ(solver.pivoted(), 0);
 }
 
-// A tail 0 - 1 on four unknowns that are all coupled is eliminated first. With 1e-10 at its end six digits are lost, with 1e-18 all; with a zero the
-// end comes last; and where what is left of 1 behind it is zero there is no way without pivots. A place with its rate stands beside, else there would
-// be pivots always.
+// A tail 0 - 1 on four unknowns that are all coupled is eliminated first. With 1e-10 at its end six digits
+// are lost, with 1e-18 all; with a zero the end comes last; and where what is left of 1 behind it is zero
+// there is no way without pivots. A place with its rate stands beside, else there would be pivots always.
 TEST(DaeSolver, RefinesOrPivotsWhereDigitsWouldBeLost) {
   struct Tail {
     double first, second;

@@ -75,7 +75,8 @@ TEST(DenseSolvers, SquareSystems) {
   EXPECT_FALSE(solve_by_lu(Eigen::MatrixXd::Zero(2, 2), Eigen::MatrixXd::Ones(2, 1)).allFinite());
 }
 
-// With a rank of two, of all x with the least residual the one of least norm; its pseudo-inverse has the four properties of Penrose.
+// With a rank of two, of all x with the least residual the one of least norm; its pseudo-inverse has the four
+// properties of Penrose.
 TEST(DenseSolvers, LeastSquaresOfAnyRank) {
   const Eigen::MatrixXd a = random_matrix(6, 2, 4) * random_matrix(2, 4, 5);
   const Eigen::VectorXd b = random_matrix(6, 1, 6);

@@ -15,7 +15,8 @@
 namespace snare::numerics {
 namespace {
 
-/// A mass on a spring with a stop: x' = v, v' = -omega^2 x, and the algebraic energy e = (v^2 + omega^2 x^2)/2.
+/// A mass on a spring with a stop: x' = v, v' = -omega^2 x, and the algebraic energy e = (v^2 + omega^2
+/// x^2)/2.
 class Oscillator final : public DaePart {
  public:
   explicit Oscillator(double omega) : omega_(omega) {}

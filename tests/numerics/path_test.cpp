@@ -157,7 +157,8 @@ TEST(Path, TangentIsThatOfTheCurve) {
 }
 
 TEST(Path, ArcLengthCrossesTheFoldItself) {
-  // At x = 1/sqrt 3 the band matrix is zero and the system at fixed parameter singular; along the arc it is not.
+  // At x = 1/sqrt 3 the band matrix is zero and the system at fixed parameter singular; along the arc it is
+  // not.
   Cubic problem;
   PathWorkspace workspace;
   const double x = 1.0 / std::sqrt(3.0);

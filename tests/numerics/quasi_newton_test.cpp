@@ -15,7 +15,8 @@ using Eigen::VectorXd;
 
 using Equations = std::function<VectorXd(const VectorXd& x)>;
 
-/// x after some corrections by the matrix A from x = 0, each corrected by what the ones before have shown, or as it is.
+/// x after some corrections by the matrix A from x = 0, each corrected by what the ones before have shown, or
+/// as it is.
 VectorXd solved(const Equations& F, const MatrixXd& A, const VectorXd& weight, int corrections,
                 bool corrected) {
   const Eigen::PartialPivLU<MatrixXd> lu(A);
@@ -49,7 +50,8 @@ TEST(QuasiNewton, ARankOfOneIsCorrectedAtOnce) {
   EXPECT_GT((solved(F, wrong, weights, 3, false) - exact).norm(), 1e-2);
 }
 
-// d^(3/2) from a matrix of half the depth: see (M.8). By the secant method's order the digits that are right become more by 1.6 each time.
+// d^(3/2) from a matrix of half the depth: see (M.8). By the secant method's order the digits that are right
+// become more by 1.6 each time.
 TEST(QuasiNewton, ATouchThatStiffensConvergesAsASecant) {
   const Equations F = [](const VectorXd& x) {
     return VectorXd(VectorXd::Constant(1, std::pow(0.5 + x[0], 1.5) - std::pow(0.9, 1.5)));

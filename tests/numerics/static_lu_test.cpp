@@ -1,4 +1,5 @@
-// Factorisation without pivoting on patterns of all kinds, against dense Eigen: the DAE solver would mend what is wrong here.
+// Factorisation without pivoting on patterns of all kinds, against dense Eigen: the DAE solver would mend
+// what is wrong here.
 
 #include "numerics/static_lu.hpp"
 
@@ -12,8 +13,8 @@
 namespace snare::numerics {
 namespace {
 
-/// Chains of vertices with one to six unknowns each, coupled with the next two, all with a few unknowns in common; some unknowns
-/// stand alone. Rows are dominated by their diagonal.
+/// Chains of vertices with one to six unknowns each, coupled with the next two, all with a few unknowns in
+/// common; some unknowns stand alone. Rows are dominated by their diagonal.
 SparseMatrix chains(std::mt19937& random) {
   const auto integer = [&](int least, int most) {
     return std::uniform_int_distribution<int>(least, most)(random);

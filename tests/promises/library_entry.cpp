@@ -2,8 +2,9 @@
 //
 //   library_entry VERB FILE ENDING [--threads N] [--set KEY=VALUE]...
 //
-// ENDING is the JSON file to write: `status` (2 for InputError, 3 for SolverStopped, 1 for any other exception), `message`, `document`,
-// and `not_finite`, the places of NaN and infinity in it. SIGINT stops the call through the library's watch.
+// ENDING is the JSON file to write: `status` (2 for InputError, 3 for SolverStopped, 1 for any other
+// exception), `message`, `document`, and `not_finite`, the places of NaN and infinity in it. SIGINT stops the
+// call through the library's watch.
 #include "base/parallel.hpp"
 #include "results/snare.hpp"
 

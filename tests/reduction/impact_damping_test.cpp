@@ -37,9 +37,10 @@ TEST(ImpactDamping, LinearSpringDashpotReturnsAsPublished) {
   EXPECT_EQ(damping_of_restitution(law, 1.0, mass, 0.2), 0.0);
 }
 
-// A straight, slack-free wire without bending stiffness, pushed at mid-span: one strain d^2/(2 s (l - s)) everywhere, hence
-// F = EA l e(d) de/dd and, with the Kelvin-Voigt time tau, c(d) = tau EA l (de/dd)^2. That equation of one unknown is
-// integrated here. The full wire has 12 elements and 2.4 g of mass, whose ripple is sqrt(2.4e-5) = 0.5 % of the force.
+// A straight, slack-free wire without bending stiffness, pushed at mid-span: one strain d^2/(2 s (l - s))
+// everywhere, hence F = EA l e(d) de/dd and, with the Kelvin-Voigt time tau, c(d) = tau EA l (de/dd)^2. That
+// equation of one unknown is integrated here. The full wire has 12 elements and 2.4 g of mass, whose ripple
+// is sqrt(2.4e-5) = 0.5 % of the force.
 TEST(ImpactDamping, StraightWireLosesWhatItsMaterialTakes) {
   constexpr double l = 0.175;
   constexpr double axial = 19300.0;

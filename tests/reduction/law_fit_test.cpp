@@ -28,8 +28,8 @@ Eigen::VectorXd numbers_of(const std::string& name) {
   return Eigen::Map<const Eigen::VectorXd>(p.data(), static_cast<Eigen::Index>(p.size()));
 }
 
-// A form fitted to its own curve finds its numbers again. Laws with a kink are not reproduced by the spline that
-// carries the curve, but at its knots, where the fit looks.
+// A form fitted to its own curve finds its numbers again. Laws with a kink are not reproduced by the spline
+// that carries the curve, but at its knots, where the fit looks.
 TEST(LawFit, FindsItsOwnNumbers) {
   for (const coupling::LawFormPointer& form : coupling::law_forms(place)) {
     const Eigen::VectorXd p = numbers_of(form->name());

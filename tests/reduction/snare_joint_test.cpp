@@ -25,8 +25,8 @@ coupling::SnareSpecification small_snare(double friction) {
   return snare;
 }
 
-// Three wires at 120 degrees: a small displacement in any direction of the plane meets the same stiffness. What is left
-// is of second order in 1 um over the seat of 5 mm.
+// Three wires at 120 degrees: a small displacement in any direction of the plane meets the same stiffness.
+// What is left is of second order in 1 um over the seat of 5 mm.
 TEST(SnaredShaft, IsIsotropicInItsPlane) {
   for (const double friction : {0.0, 0.1}) {
     const auto stiffness = [&](double angle) {
@@ -68,8 +68,8 @@ TEST(SnaredShaft, StoresTheWorkWithoutFriction) {
   EXPECT_NEAR(work, path.points.back().energy - path.points.front().energy, 1e-3 * work);
 }
 
-// In a closed cycle the loop's area is what friction takes. The slip between two points is taken as one step and the
-// force as linear in it: 80 steps a leg leave some 0.5 %, 240 leave 0.02 %.
+// In a closed cycle the loop's area is what friction takes. The slip between two points is taken as one step
+// and the force as linear in it: 80 steps a leg leave some 0.5 %, 240 leave 0.02 %.
 TEST(SnareJoint, LoopIsTheDissipation) {
   for (const int axis : {0, 2}) {
     const JointCycle cycle = cycle_snare(small_snare(0.1), axis, axis == 2 ? 0.01 : 0.003, 80);

@@ -11,7 +11,8 @@
 namespace snare::reduction {
 namespace {
 
-// The bound that a table states holds at random places, solved anew by the full wire; a coarse table and a coarse mesh.
+// The bound that a table states holds at random places, solved anew by the full wire; a coarse table and a
+// coarse mesh.
 TEST(TableBuilder, StatedBoundHoldsAtRandomPoints) {
   const WireFile file = small_wire();
   const WireCase& wire = file.cases.front();
@@ -36,8 +37,8 @@ TEST(TableBuilder, StatedBoundHoldsAtRandomPoints) {
   }
 }
 
-// The default table of the fitted wire against the full wire solved anew at 1000 places, each from the straight wire:
-// 0.5 % of the range of the force, and never beyond the bound that the table states.
+// The default table of the fitted wire against the full wire solved anew at 1000 places, each from the
+// straight wire: 0.5 % of the range of the force, and never beyond the bound that the table states.
 TEST(SlowTable, AThousandRandomPoints) {
   WireFile file = small_wire("[ranges]\ntravel_mm = 4.0\n");
   file.settings = {};

@@ -75,8 +75,8 @@ TEST(ArmScenarios, StepOfTheJemrmsJointVibratesAsTable2Says) {
   const auto expected = reference_swings(inertia, -step, 60.0);
   ASSERT_GE(found.size(), 4U);
   ASSERT_GE(expected.size(), 4U);
-  // The first two vibrations are four swings. The reference is good to some 1e-5 (its steps across the jumps of the
-  // damping, 2e-5 s of some 0.1 s); the nearly rigid joints add some 27215/1e9 = 3e-5 of softness.
+  // The first two vibrations are four swings. The reference is good to some 1e-5 (its steps across the jumps
+  // of the damping, 2e-5 s of some 0.1 s); the nearly rigid joints add some 27215/1e9 = 3e-5 of softness.
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(found[i].begin / expected[i].begin, 1.0, 3e-4) << i;
     EXPECT_NEAR(found[i].end / expected[i].end, 1.0, 3e-4) << i;
@@ -158,7 +158,8 @@ TEST(ArmScenarios, FreeBaseAnswersTheArmAndKeepsTheMomentum) {
   EXPECT_LT(history.energy_error, 1e-4);
 }
 
-// A link that begins with a speed swings on its spring; the motor behind it does not go along, and no energy comes in.
+// A link that begins with a speed swings on its spring; the motor behind it does not go along, and no energy
+// comes in.
 TEST(ArmScenarios, ABrakeHoldsItsMotorFromTheStart) {
   const auto arm = shipped("bench_arm.toml");
   auto run = scenario::joint_step(arm, arm.poses[0].angles, 0, 0.0, 0.5);

@@ -178,7 +178,8 @@ TEST_F(CaptureLaws, SayWhatIsWrong) {
   test::expect_refused(wrong, [&](const char* setting) { return read({setting}); });
 }
 
-// A thruster's table and its pulses are the same load, and nothing of it is lost between the steps: the momentum is the integral.
+// A thruster's table and its pulses are the same load, and nothing of it is lost between the steps: the
+// momentum is the integral.
 TEST_F(CaptureLaws, LoadsComeFromATableToo) {
   std::string text = with_laws;
   const std::string pulses =
@@ -203,7 +204,8 @@ TEST_F(CaptureLaws, LoadsComeFromATableToo) {
   EXPECT_NEAR(declared.x(), (3.0 * 0.002 - 10.0 * 0.01 * 0.02) / 500.0, 1e-10);  // less the pull of the tie
 }
 
-// The shipped capture with strings in place of its wires: caught, in the order of the full wires (see the file), and the balances.
+// The shipped capture with strings in place of its wires: caught, in the order of the full wires (see the
+// file), and the balances.
 TEST_F(CaptureLaws, StringsCatchAsTheWiresDo) {
   const WireMotions motions = read_file(shipped / "ssrms_htv_capture.toml",
                                         {"snares[snare].wire.model=\"stretched\"", "duration_s=4.0"});

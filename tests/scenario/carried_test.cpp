@@ -82,7 +82,8 @@ TEST(Carried, CaptureKeepsItsBalances) {
   }
 }
 
-// The two ways of an arm alone, beside its own integration: a joint's motor that has jumped, and a push of half a sine at the tip.
+// The two ways of an arm alone, beside its own integration: a joint's motor that has jumped, and a push of
+// half a sine at the tip.
 TEST(Carried, AnArmAloneMovesAsByItself) {
   const auto largest = [](const std::string& name, int joint) {
     const NamedMotion run = run_of(name, {"duration_s=3.0"});
@@ -117,7 +118,8 @@ TEST(Carried, AnArmAloneMovesAsByItself) {
       1.0, 1e-3);
 }
 
-// Mounts that give are parts of the motion, wherever they stand; what the wire itself gives in its mount is its end cell's.
+// Mounts that give are parts of the motion, wherever they stand; what the wire itself gives in its mount is
+// its end cell's.
 TEST(Carried, MountsGiveWhereTheyStandAndWhereTheyMove) {
   const std::string mount =
       "wires[wire].mount={kind=\"clamped\",translational_stiffness_N_m=42e3,translational_damping_Ns_m=5.0,"

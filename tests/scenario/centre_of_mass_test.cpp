@@ -35,7 +35,8 @@ frame = "pad"
 constexpr const char* inertia =
     "mass_kg = 5.0\ninertia_kg_m2 = [1.0, 2.0, 2.5]\nrotation_deg = [0.0, 0.0, 90.0]\n";
 
-// The frame at the origin with the centre 100 mm along x, and the frame at the centre: v + w x c is 0.01 m/s less along the pad's x.
+// The frame at the origin with the centre 100 mm along x, and the frame at the centre: v + w x c is 0.01 m/s
+// less along the pad's x.
 TEST_F(CentreOfMass, IsTheSameBodyAsOneThatIsPlacedByIt) {
   const coupling::Motion aside =
       read(std::string(inertia) +

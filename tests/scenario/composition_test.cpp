@@ -172,7 +172,8 @@ class Compositions : public test::FolderFixture {
 
 class SlowCompositions : public Compositions {};
 
-// The fixed mounts stand at first_wire_deg + 360 (k - 1)/n about the axis, and only the turning ones go the other way.
+// The fixed mounts stand at first_wire_deg + 360 (k - 1)/n about the axis, and only the turning ones go the
+// other way.
 TEST_F(Compositions, WiresOfASnareAreCountedTheSameWhicheverWayItCloses) {
   const WireMotions left = read({}), right = read({"snares[snare].turns=\"right\""});
   for (std::size_t k = 1; k <= 3; ++k) {
@@ -207,7 +208,8 @@ TEST_F(Compositions, PutEverythingWhereItBelongs) {
   const Vector3d c = m.wires[2].positions.col(0), d = m.wires[3].positions.col(0);
   EXPECT_NEAR((c - a).norm(), std::hypot(0.1 * std::sqrt(3.0), 0.004), 1e-12);
   EXPECT_NEAR((d - c).norm(), std::hypot(0.1 * std::sqrt(3.0), 0.004), 1e-12);
-  // The pin meets all wires, the wall those of its snare: visitor's fixture carries the one, a body of its own the other.
+  // The pin meets all wires, the wall those of its snare: visitor's fixture carries the one, a body of its
+  // own the other.
   int pins = 0, walls = 0;
   for (const coupling::MotionContact& contact : m.contacts) {
     pins += contact.name.starts_with("pin on ");
@@ -440,9 +442,10 @@ TEST_F(Compositions, SayWhatIsWrong) {
   }
 }
 
-// Centred and without friction, in equilibrium, a taut wire on a shaft is 2 sqrt(R^2 - r^2) + r (theta - theta_t) long,
-// theta_t = 2 acos(r/R): that gives the angle of the ring at a tension. On the shaft the tension is T - EI/(2 r^2) and the moment
-// EI/r, so that the ring's torque is n (T r + EI/(2 r)).                                                             (M.24)
+// Centred and without friction, in equilibrium, a taut wire on a shaft is 2 sqrt(R^2 - r^2) + r (theta -
+// theta_t) long, theta_t = 2 acos(r/R): that gives the angle of the ring at a tension. On the shaft the
+// tension is T - EI/(2 r^2) and the moment
+// EI/r, so that the ring's torque is n (T r + EI/(2 r)).                                               (M.24)
 TEST_F(SlowCompositions, SnareTightensAsTheClosedForm) {
   constexpr double degree = std::numbers::pi / 180.0;
   const WireMotions all = read({}, R"(schema = "snare-scenario/2"

@@ -43,7 +43,8 @@ output_interval_s = 0.001
 checkpoint_interval_s = 10.0
 )";
 
-// The edge slides askew over the wire and leaves it: the approach across the wire and the rate of the gap have opposite signs.
+// The edge slides askew over the wire and leaves it: the approach across the wire and the rate of the gap
+// have opposite signs.
 TEST_F(Dissipation, OfAnEdgeThatLeavesAWireAskewGrows) {
   expect_growing(std::string(askew_head) + R"(
 [damping]
@@ -86,8 +87,8 @@ rotation_deg = [13.958985, 10.611458, 0.0]
                  0.1);
 }
 
-// A block that falls 12 um on to a ramp of 10 degrees slides until it is carried, by micrometres, and then rests: friction is 0.5. What lies
-// there has touched once.
+// A block that falls 12 um on to a ramp of 10 degrees slides until it is carried, by micrometres, and then
+// rests: friction is 0.5. What lies there has touched once.
 TEST_F(Dissipation, OfABlockThatRestsOnARampEnds) {
   for (const char* model :
        {"model = \"spring_dashpot\"\nk_N_m = 1e5\nc_Ns_m = 100.0\n",

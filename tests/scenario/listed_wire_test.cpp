@@ -77,8 +77,9 @@ double largest_energy_error(const std::vector<coupling::MotionSample>& samples) 
   return worst;
 }
 
-// A uniform rod about its end: a quarter of the period 4 sqrt(2 L/(3 g)) K(sin(angle/2)). The lumped masses of n elements have a moment of
-// inertia that is larger by 1/(2 n^2). The wire bends by 2e-4 of its length, which counts twice.
+// A uniform rod about its end: a quarter of the period 4 sqrt(2 L/(3 g)) K(sin(angle/2)). The lumped masses
+// of n elements have a moment of inertia that is larger by 1/(2 n^2). The wire bends by 2e-4 of its length,
+// which counts twice.
 TEST_F(WireStarts, PinnedWireSwingsAsAPhysicalPendulum) {
   constexpr double length = 0.18;
   constexpr int elements = 20;
@@ -102,7 +103,8 @@ TEST_F(WireStarts, PinnedWireSwingsAsAPhysicalPendulum) {
   }
 }
 
-// Past the level from which it fell nothing is singular: the pin is a ball joint. Pushed by a thousandth out of its plane it swings in space.
+// Past the level from which it fell nothing is singular: the pin is a ball joint. Pushed by a thousandth out
+// of its plane it swings in space.
 TEST_F(WireStarts, PinnedWireSwingsUpToWhereItBegan) {
   const double half =
       2.0 * std::sqrt(2.0 * 0.18 / (3.0 * gravity)) * boost::math::ellint_1(std::sin(0.25 * pi));
@@ -117,8 +119,9 @@ TEST_F(WireStarts, PinnedWireSwingsUpToWhereItBegan) {
   EXPECT_GT(std::abs(tip.y()), 1e-6);
 }
 
-// A string that begins in its first sine at a stretch e: omega = k sqrt(EA e/((1 + e) rho A) (1 + EI k^2/(EA e))), k = pi/L, and for lumped
-// masses on edges of length h less by sin(k h/2)/(k h/2). Its amplitude a adds a share of some (a/L)^2/e: 4e-7.
+// A string that begins in its first sine at a stretch e: omega = k sqrt(EA e/((1 + e) rho A) (1 + EI k^2/(EA
+// e))), k = pi/L, and for lumped masses on edges of length h less by sin(k h/2)/(k h/2). Its amplitude a adds
+// a share of some (a/L)^2/e: 4e-7.
 TEST_F(WireStarts, PluckedStringHasItsFrequency) {
   constexpr double span = 0.2, stretch = 1e-3, amplitude = 4e-6, bending = 1e-6;
   constexpr int elements = 40;
@@ -148,8 +151,8 @@ TEST_F(WireStarts, PluckedStringHasItsFrequency) {
   EXPECT_NEAR(coupling::end_tension(all.samples.front(), 0), tension, 1e-5 * tension);
 }
 
-// A free wire that is thrown with a spin: its middle flies as a point, it turns evenly and stays straight, stretched by the spin alone,
-// rho omega^2 L^2/(8 E) at its middle: 1e-9.
+// A free wire that is thrown with a spin: its middle flies as a point, it turns evenly and stays straight,
+// stretched by the spin alone, rho omega^2 L^2/(8 E) at its middle: 1e-9.
 TEST_F(WireStarts, ThrownWireFliesAsARigidRod) {
   constexpr double speed = 2.0, spin = 20.0, time = 0.2, half = 0.05;
   write("thrown.csv",

@@ -28,7 +28,8 @@ NamedMotion air_table_with(const std::vector<std::string>& settings) {
   return read_scenario(air_table, test::overrides(settings)).motions.runs.at(0);
 }
 
-// Vertices on a parabola of curvature k: a disc of radius R below touches it where the normals agree, R beyond along the normal.
+// Vertices on a parabola of curvature k: a disc of radius R below touches it where the normals agree, R
+// beyond along the normal.
 TEST(PushLaws, ADiscTouchesAParabolaAlongItsNormal) {
   constexpr double span = 0.2, k = 4.0, R = 0.01;
   Eigen::Matrix3Xd rest = Eigen::Matrix3Xd::Zero(3, 201);
@@ -76,14 +77,15 @@ TEST(PushLaws, QuadraticHeadOn) {
                       "solver.relative_tolerance=1e-7"});
   const coupling::MotionResult r = coupling::simulate(run.motion, run.options);
   ASSERT_TRUE(r.report.usable()) << r.report.message;
-  // Quadrature of A d^2 + B d + C (cut off where it would pull) against m v^2/2 gives depth 6.07 mm, force 25.2 N;
-  // printed to three digits, steps end up to 1e-3 beside the peak.
+  // Quadrature of A d^2 + B d + C (cut off where it would pull) against m v^2/2 gives depth 6.07 mm, force
+  // 25.2 N; printed to three digits, steps end up to 1e-3 beside the peak.
   EXPECT_NEAR(r.peak_force[0], 25.2, 0.1);
   EXPECT_NEAR(r.impulse[0].y(), 1.78, 0.01);
   EXPECT_NEAR(r.energy.dissipated, 0.0, 1e-3 * 0.5 * 8.9 * 0.01);  // an elastic law gives all back
 }
 
-// What the law has stored up to where it is cut off stays stored there: a run that ends at 0.7 mm, between the zeros at 0.35 and 1.11 mm.
+// What the law has stored up to where it is cut off stays stored there: a run that ends at 0.7 mm, between
+// the zeros at 0.35 and 1.11 mm.
 TEST(PushLaws, KeepTheirEnergyWhereTheyAreCutOff) {
   const NamedMotion run = air_table_with(
       {"wires[wire].model=\"quadratic\"", "shapes[probe].position_mm=[0.0, 100.0, 0.0]",
@@ -123,7 +125,8 @@ nlohmann::json law_json(double span, double slack) {
   const double bending = 193e9 * EIGEN_PI / 64.0 * std::pow(1.5e-3, 4),
                axial = 193e9 * EIGEN_PI / 4.0 * 2.25e-6;
   std::vector<double> nodes;
-  // F L^2/EI = 1e4 x^2 g(s) over x = d/L, s, with a level g at mid-span: the value, d, s, ds; nothing by the slack.
+  // F L^2/EI = 1e4 x^2 g(s) over x = d/L, s, with a level g at mid-span: the value, d, s, ds; nothing by the
+  // slack.
   const std::vector<std::array<double, 3>> knots{{0.1, 1.2, 4.0}, {0.5, 2.0, 0.0}};  // s, g, dg/ds
   for (int e = 0; e < 2; ++e) {
     for (const auto& [s, g, slope] : knots) {

@@ -1,5 +1,5 @@
-// Causes that a score at the base fit does not see, or that act on the sensors: readings by the model itself with a planted
-// cause and drawn noise, traced from what was declared.
+// Causes that a score at the base fit does not see, or that act on the sensors: readings by the model itself
+// with a planted cause and drawn noise, traced from what was declared.
 
 #include "identification/effects/catalogue.hpp"
 #include "identification/tracing/trace.hpp"
@@ -93,8 +93,8 @@ testing::AssertionResult names(const Trace& t, const std::string& effect) {
   return (found ? testing::AssertionSuccess() : testing::AssertionFailure()) << told(t);
 }
 
-// A score at the base fit points away from clamps that turn: stiffnesses of the base have gone far astray. What was declared of the
-// stiffnesses, from which the fit begins, must not matter.
+// A score at the base fit points away from clamps that turn: stiffnesses of the base have gone far astray.
+// What was declared of the stiffnesses, from which the fit begins, must not matter.
 TEST(SlowCauses, ClampsThatTurnAreFoundFromAnyStart) {
   const auto nitinol = bench(0.8 * mm, 60e9, 220.0 * mm, 214.0 * mm, 12.0 * mm);
   Experiment e = with(nitinol, {planted("mount_rotational_compliance.compliance_rad_Nm", 3.33)}, 0.03);

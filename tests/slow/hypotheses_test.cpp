@@ -1,5 +1,5 @@
-// Weighed hypotheses on readings of the collocated elastica, which shares nothing with the solver: unknown functions that are in no
-// catalogue are put into the readings.
+// Weighed hypotheses on readings of the collocated elastica, which shares nothing with the solver: unknown
+// functions that are in no catalogue are put into the readings.
 
 #include "identification/tracing/hypotheses.hpp"
 
@@ -65,8 +65,8 @@ TEST(SlowHypotheses, NothingLeadsWhereNothingIsMissing) {
   EXPECT_GT(sum / 10.0, 0.85);
 }
 
-// A wave over the force, or over the travel, of a reading's standard deviation: in six series of 40 readings some ten
-// deviations in all. The right variable leads in nearly all sets (three positions, two slacks).
+// A wave over the force, or over the travel, of a reading's standard deviation: in six series of 40 readings
+// some ten deviations in all. The right variable leads in nearly all sets (three positions, two slacks).
 TEST(SlowHypotheses, TheVariableOfAnUnknownFunctionLeads) {
   const double largest = largest_force(validation::make_blind_set("none", 0.0, 1).experiment);
   const auto over_force = [&](const Series& s, std::size_t i) { return s.readings->force[i] / largest; };

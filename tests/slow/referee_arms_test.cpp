@@ -1,4 +1,5 @@
-// Random elastic arms with drives, and the shipped arms in random poses, against DART, which shares no code with ours. Random trees of rigid
+// Random elastic arms with drives, and the shipped arms in random poses, against DART, which shares no code
+// with ours. Random trees of rigid
 // bodies: tests/multibody/dart_test.cpp.
 
 #include "multibody/arm/arm_file.hpp"
@@ -28,7 +29,8 @@ namespace {
 using multibody::Drive;
 using multibody::DriveMode;
 
-/// A joint's gear, written down anew (A.9) to (A.11): a spring of two slopes with a damper, friction that does not stick, a drive.
+/// A joint's gear, written down anew (A.9) to (A.11): a spring of two slopes with a damper, friction that
+/// does not stick, a drive.
 struct Gear {
   int velocity = 0, coordinate = 0;  ///< of the joint in the tree
   double first = 0.0, second = 0.0, bend = 0.0, damping = 0.0;
@@ -370,7 +372,8 @@ TEST(SlowReferees, ShippedArmsInRandomPosesAgreeWithDart) {
     SCOPED_TRACE(file.path().filename().string());
     ++arms;
     multibody::Tree tree = multibody::read_arm(file.path()).arm.tree;
-    // A link of a ton moves one of a gram: entries of the mass matrix are held against the roots of their diagonals.
+    // A link of a ton moves one of a gram: entries of the mass matrix are held against the roots of their
+    // diagonals.
     double worst = 0.0;
     for (int k = problems.first; k < problems.end; ++k) {
       Draws draw(problems.seed, k);

@@ -51,7 +51,8 @@ struct ContactForces {
   std::vector<double> bristle_rates;
 };
 
-/// The distributed load between ball and wire (M.6) to (M.9). The rule by which it is integrated on each closed stretch is part of the
+/// The distributed load between ball and wire (M.6) to (M.9). The rule by which it is integrated on each
+/// closed stretch is part of the
 /// model: (M.8).
 class PlanarContact {
  public:
@@ -164,7 +165,8 @@ class PlanarContact {
            (std::pow(std::abs(gap_rate), 3) + std::pow(std::abs(across), 3));
   }
 
-  /// The slope of the curve at a vertex: of the parabola through it and its neighbours (C.1), at an end through the last three vertices.
+  /// The slope of the curve at a vertex: of the parabola through it and its neighbours (C.1), at an end
+  /// through the last three vertices.
   struct Slope {
     std::size_t first;  ///< edge; the other one is behind it
     double before, after;

@@ -37,7 +37,8 @@ class Draws {
   std::mt19937 random_;
 };
 
-/// Which problems a referee draws: a fixed seed and a fixed number of them, unless the environment names others.
+/// Which problems a referee draws: a fixed seed and a fixed number of them, unless the environment names
+/// others.
 ///   SNARE_REFEREE_SEED, SNARE_REFEREE_COUNT: seed and number of problems
 ///   SNARE_REFEREE_ONLY: index of the only problem to run
 struct Problems {

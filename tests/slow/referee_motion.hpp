@@ -20,7 +20,8 @@
 #include <string>
 #include <vector>
 
-// What the referees of motions have in common: the second integrator, random wires, and how far two integrations may differ.
+// What the referees of motions have in common: the second integrator, random wires, and how far two
+// integrations may differ.
 namespace snare::referee {
 
 /// Places, as many velocities, then what else is integrated.
@@ -29,7 +30,8 @@ using Rate = std::function<void(const State&, State&, double)>;
 
 /// Samples of a motion, the start included.
 inline constexpr int intervals = 40;
-/// Relative and absolute tolerance of a step of the reference, and where only the growth of a change of 1e-6 counts.
+/// Relative and absolute tolerance of a step of the reference, and where only the growth of a change of 1e-6
+/// counts.
 inline constexpr double reference_tolerance = 1e-11, rough_tolerance = 1e-9;
 /// What a step of the simulation may err by, as a share of the way and of the speed.
 inline constexpr double step_tolerance = 1e-8;
@@ -134,7 +136,8 @@ struct Verdict {
   std::string text;
 };
 
-/// Simulates and compares. sampled: places and velocities of a sample; end: time from which on the two need not agree [s].
+/// Simulates and compares. sampled: places and velocities of a sample; end: time from which on the two need
+/// not agree [s].
 inline Verdict judged(
     const Reference& reference, const coupling::Motion& motion, coupling::MotionOptions options,
     const std::function<State(const coupling::MotionSample&)>& sampled,
@@ -349,7 +352,8 @@ inline void sample_wire(const PlanarProblem& p, const coupling::MotionSample& s,
   }
 }
 
-/// Runs the problems of one kind; each must end within its limit, and in half of them there is something to compare.
+/// Runs the problems of one kind; each must end within its limit, and in half of them there is something to
+/// compare.
 template <class Problem>
 void judge_all(int count, Problem (*draw_one)(Draws&), Verdict (*judge)(const Problem&)) {
   const Problems problems(count);

@@ -1,5 +1,6 @@
-// Random small wires in motion: places and velocities as `snare simulate` integrates them, against equations written a second time
-// (referee_wire.hpp, referee_spatial_wire.hpp) and integrated by an explicit Runge-Kutta method of Boost.
+// Random small wires in motion: places and velocities as `snare simulate` integrates them, against equations
+// written a second time (referee_wire.hpp, referee_spatial_wire.hpp) and integrated by an explicit
+// Runge-Kutta method of Boost.
 
 #include "tests/slow/referee_motion.hpp"
 #include "tests/slow/referee_spatial_wire.hpp"

@@ -1,5 +1,5 @@
-// Random pushes of loose wires: the discrete rod as `snare push` solves it against the continuous elastica by multiple shooting
-// (validation/elastica_push.hpp), which shares no equations and no code with it.
+// Random pushes of loose wires: the discrete rod as `snare push` solves it against the continuous elastica by
+// multiple shooting (validation/elastica_push.hpp), which shares no equations and no code with it.
 
 #include "base/units.hpp"
 #include "coupling/statics/push_solver.hpp"
@@ -23,7 +23,8 @@ namespace {
 using base::mm;
 using std::numbers::pi;
 
-/// A wire of a metal or a plastic: solid, or a rope with a share of the bending stiffness of its solid section.
+/// A wire of a metal or a plastic: solid, or a rope with a share of the bending stiffness of its solid
+/// section.
 struct Material {
   const char* name;
   double modulus, density;                    // [Pa], [kg/m^3]
@@ -61,7 +62,8 @@ double taut_height(double span, double length, double x) {
   return low;
 }
 
-/// Travels up to a share of the way on which an inextensible wire becomes taut, or, against the bulge, of its height.
+/// Travels up to a share of the way on which an inextensible wire becomes taut, or, against the bulge, of its
+/// height.
 coupling::PushProblem random_push(Draws& draw) {
   coupling::PushProblem p;
   p.wire = random_wire(draw);
@@ -101,7 +103,8 @@ std::string described(const coupling::PushProblem& p, int elements) {
   return text;
 }
 
-/// The same push of the elastica. Its curvature is positive to the left, against the bulge. friction_slope: see ElasticaPush.
+/// The same push of the elastica. Its curvature is positive to the left, against the bulge. friction_slope:
+/// see ElasticaPush.
 validation::ElasticaPush elastica_of(const coupling::PushProblem& p, double friction_slope, double tension) {
   validation::ElasticaPush e;
   e.wire = {p.wire.length, p.wire.bending_stiffness(), p.wire.axial_stiffness(), -p.wire.natural_curvature};
@@ -131,7 +134,8 @@ double end_of_unique_path(const coupling::PushCurve& curve) {
   return end;
 }
 
-/// The elastica at the travels of the push. The path is followed in shorter steps than those, and ends where the sign of its determinant
+/// The elastica at the travels of the push. The path is followed in shorter steps than those, and ends where
+/// the sign of its determinant
 /// changes: there it has passed a branch point or a fold, or has jumped to another branch.
 std::vector<validation::ElasticaState> reference_path(const validation::ElasticaPush& elastica,
                                                       const std::vector<double>& travel) {
@@ -170,12 +174,14 @@ struct Comparison {
   std::vector<std::string> failures;
 };
 
-/// Below this the two cannot be told apart: share of the largest force on the wire. The elastica errs by 1e-9 of the force, Newton's method
-/// of the discrete rod ends at 1e-10 of its forces, and a small force is the difference of large tensions.
+/// Below this the two cannot be told apart: share of the largest force on the wire. The elastica errs by 1e-9
+/// of the force, Newton's method of the discrete rod ends at 1e-10 of its forces, and a small force is the
+/// difference of large tensions.
 constexpr double floor_share = 1e-7;
 
-/// The stated error is an estimate from the forces of three meshes (W.11). Where their differences happen to cancel it says too little: how
-/// much may then be left, as a share of the largest force, at 256 edges; on coarser meshes more, by the third power of the element.
+/// The stated error is an estimate from the forces of three meshes (W.11). Where their differences happen to
+/// cancel it says too little: how much may then be left, as a share of the largest force, at 256 edges; on
+/// coarser meshes more, by the third power of the element.
 constexpr double unseen_share = 2e-4;
 
 void compare(const coupling::PushProblem& p, int elements, int index, Comparison& sum) {

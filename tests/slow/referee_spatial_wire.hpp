@@ -17,8 +17,8 @@ struct SpatialWireEnd {
   Vector3 director = Vector3::UnitY();   ///< of the material there
 };
 
-/// A round, naturally straight wire in space with its curvature at the vertices. Its bending does not dissipate: then nothing but
-/// their sum matters of how its edges turn about themselves.
+/// A round, naturally straight wire in space with its curvature at the vertices. Its bending does not
+/// dissipate: then nothing but their sum matters of how its edges turn about themselves.
 struct SpatialWire {
   std::vector<double> rest;
   double bending = 0.0, torsional = 0.0, axial = 0.0;  ///< EI, GJ, EA
@@ -60,8 +60,8 @@ inline Complex3 carried(const Complex3& v, const Complex3& a, const Complex3& b)
 
 /// Adds the forces on the vertices at places x and velocities v.
 ///   E = sum EA e^2 h/2 + sum EI |kb|^2/(2 l) + GJ/(2 L) (turn - natural L)^2
-/// Twist is quasi-static, so its torque is the same in all cells: what counts is the turn of the right end's director against that of the
-/// left one, carried along the edges. No torque where an end lets the wire turn.
+/// Twist is quasi-static, so its torque is the same in all cells: what counts is the turn of the right end's
+/// director against that of the left one, carried along the edges. No torque where an end lets the wire turn.
 inline void add_spatial_forces(const SpatialWire& w, const std::vector<Vector3>& x,
                                const std::vector<Vector3>& v, std::vector<Vector3>& f) {
   constexpr double step = 1e-30;

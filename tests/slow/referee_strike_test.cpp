@@ -1,5 +1,6 @@
-// Random small wires struck by a body with a ball, with and without friction: the motion as `snare simulate` integrates it, against contact
-// written a second time (referee_contact.hpp) and integrated by an explicit Runge-Kutta method of Boost.
+// Random small wires struck by a body with a ball, with and without friction: the motion as `snare simulate`
+// integrates it, against contact written a second time (referee_contact.hpp) and integrated by an explicit
+// Runge-Kutta method of Boost.
 
 #include "coupling/contact/shape.hpp"
 #include "tests/slow/referee_contact.hpp"
@@ -20,7 +21,8 @@ struct StrikeProblem {
   double lever = 0.0;  ///< by which angles and spins of the body count as places and speeds
 };
 
-/// A ball of a twentieth of the wire's length beside its middle part, that meets it within a third of the time.
+/// A ball of a twentieth of the wire's length beside its middle part, that meets it within a third of the
+/// time.
 StrikeProblem random_strike(Draws& draw) {
   StrikeProblem s;
   PlanarProblem& p = s.planar;
@@ -98,8 +100,8 @@ std::string described(const StrikeProblem& s) {
       described(s.planar));
 }
 
-/// Equations of motion of wire and body. State: places of the wire, of the body, its angle times the lever; as many velocities; bristles;
-/// impulse on the wire.
+/// Equations of motion of wire and body. State: places of the wire, of the body, its angle times the lever;
+/// as many velocities; bristles; impulse on the wire.
 class StrikeEquations {
  public:
   explicit StrikeEquations(const StrikeProblem& s)
@@ -256,7 +258,8 @@ Verdict judge_strike(const StrikeProblem& s) {
       },
       [&](const coupling::MotionResult& result) {
         if (!result.impulse.empty()) impulse = p.plane.seen(result.impulse[0]);
-        // What a bristle still holds of one touch is lost in the first moments of the next one, in which the error test does not follow it.
+        // What a bristle still holds of one touch is lost in the first moments of the next one, in which the
+        // error test does not follow it.
         int touches = 0;
         for (const coupling::MotionEvent& e : result.events) {
           if (e.kind == coupling::MotionEvent::Kind::touch && ++touches == 2 &&

@@ -12,8 +12,9 @@
 #include <stdexcept>
 #include <vector>
 
-// Equations of motion of one wire, written down from docs/theory once more: energies, of which complex steps give the forces, lumped masses,
-// and what touches them. They share no code with the rod, its contact and its integrator.
+// Equations of motion of one wire, written down from docs/theory once more: energies, of which complex steps
+// give the forces, lumped masses, and what touches them. They share no code with the rod, its contact and its
+// integrator.
 namespace snare::referee {
 
 using Complex = std::complex<double>;
@@ -89,7 +90,8 @@ inline Complex tanh_over(Complex x) {
   return std::tanh(w) / w;
 }
 
-/// By y, C = y/2 and D = (1/y - 1)/(2 x), with y' = (1 - x y^2 - y)/(2 x); near zero by the power series of tanh and coth.
+/// By y, C = y/2 and D = (1/y - 1)/(2 x), with y' = (1 - x y^2 - y)/(2 x); near zero by the power series of
+/// tanh and coth.
 template <class S>
 EdgeFlexibility<S> smooth_flexibility(S z) {
   const S x = 0.25 * z;
@@ -121,7 +123,8 @@ inline EdgeFlexibility<double> edge_flexibility(double z) {
           f.d_slope + dz * d2};
 }
 
-/// Curvatures and tensions are nowhere stationary: an edge is pressed far beyond the load that buckles it by itself.
+/// Curvatures and tensions are nowhere stationary: an edge is pressed far beyond the load that buckles it by
+/// itself.
 struct NoBalance : std::runtime_error {
   NoBalance() : std::runtime_error("curvatures and tensions do not balance") {}
 };
@@ -237,7 +240,8 @@ class PlanarForces {
     return r;
   }
 
-  /// Newton's method with a matrix that is kept as long as it serves; where that fails, from the chords' strains with a matrix a step.
+  /// Newton's method with a matrix that is kept as long as it serves; where that fails, from the chords'
+  /// strains with a matrix a step.
   void balance(const Places& x) {
     if (iterate(x, 8)) return;
     for (std::size_t i = 0; i < wire_.vertices(); ++i) unknowns_[index(i)] = wire_.natural;

@@ -77,7 +77,8 @@ TEST(SlowTrace, IsSilentWhereNothingIsMissing) {
   }
 }
 
-// Six places off by 0.02 mm (of one standard deviation), which is tens of standard deviations of the readings.
+// Six places off by 0.02 mm (of one standard deviation), which is tens of standard deviations of the
+// readings.
 TEST(SlowTrace, ErrorsOfPlacesThatAreDeclaredAreNoEffect) {
   const validation::BlindDesign places{.length_deviation = 1e-4, .position_deviation = 2e-5};
   Experiment e = validation::make_blind_set("none", 0.0, 2001, places).experiment;

@@ -38,7 +38,8 @@ TEST(BenchmarkScore, IsTheClosedFormOfAWaveOfAnotherSize) {
   EXPECT_NEAR(*s.touch, std::asin(0.5 / 1.1) - std::asin(0.5), 1e-5);
 }
 
-// sin(x + e) - sin x = 2 sin(e/2) cos(x + e/2), whose square has the mean 2 sin^2(e/2) over half a turn, that of sin^2 is 1/2.
+// sin(x + e) - sin x = 2 sin(e/2) cos(x + e/2), whose square has the mean 2 sin^2(e/2) over half a turn, that
+// of sin^2 is 1/2.
 TEST(BenchmarkScore, IsTheClosedFormOfAWaveThatIsLate) {
   constexpr double late = -0.05;
   const TrackScore s = score_of(half_wave(1.0, late, 2000), half_wave(1.0, 0.0, 2000), 0.5);

@@ -36,7 +36,8 @@ TEST(Permutation, IsOneOfAnySize) {
   }
 }
 
-// The mean of n independent uniform numbers has a standard deviation of 1 / sqrt(12 n); five of them are allowed.
+// The mean of n independent uniform numbers has a standard deviation of 1 / sqrt(12 n); five of them are
+// allowed.
 TEST(Permutation, HashedNumbersAreUniform) {
   constexpr int n = 100000;
   double sum = 0.0;
@@ -76,8 +77,9 @@ TEST(Design, HypercubeHasOneCaseInEverySlice) {
   }
 }
 
-// Property A of Sobol's sequence holds for a digital shift, too: of the first 2^d points of d dimensions one is in each of the 2^d
-// boxes that halve every axis, and of the first 2^k each of the 2^k slices of an axis has one.
+// Property A of Sobol's sequence holds for a digital shift, too: of the first 2^d points of d dimensions one
+// is in each of the 2^d boxes that halve every axis, and of the first 2^k each of the 2^k slices of an axis
+// has one.
 TEST(Design, SobolPointsFillSlicesAndBoxes) {
   const Design design({uniform("a"), uniform("b"), uniform("c")}, settings(DesignKind::sobol, 1024));
   std::vector<std::set<int>> slices(3);
@@ -114,7 +116,8 @@ TEST(Design, SensitivityRowsSwapOneColumn) {
   }
 }
 
-// Normal variables with a normal copula are correlated as declared; the estimate scatters by (1 - r^2) / sqrt(n).
+// Normal variables with a normal copula are correlated as declared; the estimate scatters by (1 - r^2) /
+// sqrt(n).
 TEST(Design, CorrelationIsThatDeclared) {
   constexpr std::uint64_t n = 20000;
   constexpr double r = -0.7;
@@ -143,7 +146,8 @@ TEST(Design, ContradictingCorrelationsAreNone) {
   EXPECT_TRUE(is_correlation(Eigen::MatrixXd(0, 0)));
 }
 
-// The distribution function undoes the quantile, cut or not; its derivative's integral is what quantiles of a table say.
+// The distribution function undoes the quantile, cut or not; its derivative's integral is what quantiles of a
+// table say.
 TEST(Distribution, QuantileAndProbabilityAreInverse) {
   const Distribution all[] = {{Distribution::Shape::uniform, -2.0, 5.0},
                               {Distribution::Shape::normal, 1.0, 0.5},

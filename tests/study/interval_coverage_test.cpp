@@ -1,5 +1,5 @@
-// Intervals of sweeps contain closed-form probabilities and indices as often as they say. benchmarks/results/intervals.json has
-// more functions, sizes and seeds.
+// Intervals of sweeps contain closed-form probabilities and indices as often as they say.
+// benchmarks/results/intervals.json has more functions, sizes and seeds.
 
 #include "benchmarks/interval_coverage.hpp"
 

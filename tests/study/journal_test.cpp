@@ -79,7 +79,8 @@ TEST_F(JournalTest, AFileWithoutCasesIsRemoved) {
   EXPECT_TRUE(std::filesystem::exists(file()));
 }
 
-// The cases that ended other ranks go into the journal; the file of a rank that is still there and one of another study stay.
+// The cases that ended other ranks go into the journal; the file of a rank that is still there and one of
+// another study stay.
 TEST_F(JournalTest, TakesTheCasesOfRanksThatHaveEnded) {
   Journal(rank_journal(file(), 1), "s", 10).append_at_the_end(4, "crashed");
   Journal(rank_journal(file(), 2), "another", 10).append(5, "of another study");

@@ -72,7 +72,8 @@ Seen yes_or_no(bool yes) {
   return {0.0, yes ? "true" : "false"};
 }
 
-// A disc: its edge is followed, and its inside and outside are inferred, with cases in proportion to the edge.
+// A disc: its edge is followed, and its inside and outside are inferred, with cases in proportion to the
+// edge.
 TEST(RefinedGrid, FollowsTheEdgeOfADisc) {
   std::uint64_t last = 0;
   for (const int levels : {2, 3, 4, 5}) {
@@ -83,7 +84,8 @@ TEST(RefinedGrid, FollowsTheEdgeOfADisc) {
     });
     EXPECT_EQ(disc.wrong(), 0U);
     EXPECT_EQ(disc.grid().told() + disc.inferred(), points * points);
-    // A digital circle passes 8 r cells. Of each level two cases a cell were enough, and every level has half of the next one's.
+    // A digital circle passes 8 r cells. Of each level two cases a cell were enough, and every level has half
+    // of the next one's.
     EXPECT_LT(static_cast<double>(disc.grid().told()), 121.0 + 2.0 * 2.0 * 8.0 * 0.33 * steps);
     if (last > 0) {
       EXPECT_LT(disc.grid().told(), 5 * last / 2);
@@ -94,7 +96,8 @@ TEST(RefinedGrid, FollowsTheEdgeOfADisc) {
 
 // A tongue that leaves the cells in which it was seen first is followed through cells that seemed to agree.
 TEST(RefinedGrid, GoesBackToCellsThatSeemedToAgree) {
-  // A strip two steps wide from (0, 0) along a diagonal that misses the corners of the first cells but the first.
+  // A strip two steps wide from (0, 0) along a diagonal that misses the corners of the first cells but the
+  // first.
   const Refinement strip({{{65, true}, {65, true}}, 4, 0.0}, [](const auto& place) {
     const double x = static_cast<double>(place[0]), y = static_cast<double>(place[1]);
     return yes_or_no(std::abs(y - 0.8 * x) <= 1.0);
@@ -118,15 +121,16 @@ TEST(RefinedGrid, ThreeAxesAndAListThatHasNoOrder) {
   });
   EXPECT_EQ(ball.wrong(), 0U);
   EXPECT_LT(ball.grid().told(), 2U * 17U * 17U * 17U / 3U);
-  // Nothing happens in the second half of the list: its first cells are all that was run of it, and 125 cases are their corners.
+  // Nothing happens in the second half of the list: its first cells are all that was run of it, and 125 cases
+  // are their corners.
   std::uint64_t run = 0;
   for (std::uint64_t k = 0; k < ball.grid().points(); ++k)
     run += k / (17U * 17U) % 2 == 1 && !ball.grid().inferred(k) ? 1 : 0;
   EXPECT_EQ(run, 125U);
 }
 
-// Numbers: between corners that are close, straight between them. A paraboloid has the error of straight interpolation in a cell, an
-// eighth of the second differences over it, twice for two axes.
+// Numbers: between corners that are close, straight between them. A paraboloid has the error of straight
+// interpolation in a cell, an eighth of the second differences over it, twice for two axes.
 TEST(RefinedGrid, InterpolatesNumbersThatAreClose) {
   const double by = 0.05;
   const auto bowl = [](const auto& place) {

@@ -51,7 +51,8 @@ TEST(Scheduler, CasesOfALostWorkerComeAgainAndThoseLostTwiceAreGivenUp) {
   EXPECT_TRUE(s.done());
 }
 
-/// Time that a study takes whose workers ask one leader, in which a request costs `answer_s`. Virtual time, the scheduler's own code.
+/// Time that a study takes whose workers ask one leader, in which a request costs `answer_s`. Virtual time,
+/// the scheduler's own code.
 double simulated_time(std::uint64_t cases, int workers, double case_s, double answer_s, double travel_s) {
   Scheduler scheduler({.count = cases, .workers = workers}, none);
   std::mt19937_64 random(1);
@@ -86,7 +87,8 @@ double simulated_time(std::uint64_t cases, int workers, double case_s, double an
   return end;
 }
 
-// 1e6 cases of 10 ms on 1024 workers, 20 us to answer a request and 50 us on the way, which is more than Open MPI takes.
+// 1e6 cases of 10 ms on 1024 workers, 20 us to answer a request and 50 us on the way, which is more than Open
+// MPI takes.
 TEST(Scheduler, AMillionCasesOnAThousandRanksLoseLessThanTwoHundredths) {
   constexpr std::uint64_t cases = 1000000;
   constexpr int workers = 1024;

@@ -125,7 +125,8 @@ TEST(Subset, MeanAndScatterOfManyRuns) {
     }
     const double mean = sum / runs;
     const double variation = std::sqrt(squares / runs - mean * mean) / mean;
-    // The mean of a hundred is known to 3 %, and the estimate's bias, of the order of a run's variance over four levels, is as much.
+    // The mean of a hundred is known to 3 %, and the estimate's bias, of the order of a run's variance over
+    // four levels, is as much.
     EXPECT_NEAR(mean, 1e-4, 0.12e-4) << d;
     // As stated: 100 runs know their own scatter to a fourteenth; a factor of 1.3 is four times that.
     EXPECT_LT(variation, 1.3 * stated / runs) << d;
@@ -163,7 +164,8 @@ TEST(Subset, YesOrNoIsCountedAsItIs) {
   EXPECT_NEAR(none.interval().high, 1.0 - std::pow(0.025, 1e-3), 1e-9);
 }
 
-// A margin in steps: more cases than seeds are beyond a threshold, and those that go on must be drawn from all of them.
+// A margin in steps: more cases than seeds are beyond a threshold, and those that go on must be drawn from
+// all of them.
 TEST(Subset, MarginsInStepsAreNotBiased) {
   double sum = 0.0;
   constexpr int runs = 40;

@@ -32,8 +32,8 @@ namespace snare::test {
   return wire;
 }
 
-/// Two wires of 0.2 m and 1 mm radius that cross at their middles under an angle [rad], the second below the first by `gap`,
-/// parallel to the plane y = 0; moved along themselves by a part of an element.
+/// Two wires of 0.2 m and 1 mm radius that cross at their middles under an angle [rad], the second below the
+/// first by `gap`, parallel to the plane y = 0; moved along themselves by a part of an element.
 [[nodiscard]] inline coupling::Motion crossed_wires(double angle, double gap, int elements,
                                                     double strain = 0.0) {
   constexpr double radius = 1e-3, half = 0.1, aside = 0.0012;

@@ -64,7 +64,8 @@ namespace snare::test {
   return line;
 }
 
-/// Writes a mesh by the file's ending (.stl, .obj, .off; "_binary.stl" a binary one), lengths divided by `unit`.
+/// Writes a mesh by the file's ending (.stl, .obj, .off; "_binary.stl" a binary one), lengths divided by
+/// `unit`.
 inline void write_mesh(const std::filesystem::path& file, const coupling::TriangleMesh& mesh, double unit) {
   std::ofstream out(file, std::ios::binary);
   out << std::setprecision(17);

@@ -14,7 +14,8 @@ namespace snare::test {
 /// Bends and stretches differently in every direction, naturally curved and twisted, mounts that give.
 [[nodiscard]] wire::SpatialRodProperties general_properties();
 
-/// A crooked rod: unit spacing disturbed by up to `amount` edge lengths in every direction, angles by up to one.
+/// A crooked rod: unit spacing disturbed by up to `amount` edge lengths in every direction, angles by up to
+/// one.
 [[nodiscard]] wire::PlanarState random_state(const wire::PlanarRod& rod, const wire::Controls& controls,
                                              std::mt19937& random, double amount);
 [[nodiscard]] wire::SpatialState random_state(const wire::SpatialRod& rod, const wire::Controls& controls,

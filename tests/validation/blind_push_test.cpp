@@ -147,7 +147,8 @@ TEST(BlindWire, SticksAsTheReference) {
   }
 }
 
-// Between rigid clamps a uniform natural curvature shifts M by a constant; in clamps that give it does not cancel.
+// Between rigid clamps a uniform natural curvature shifts M by a constant; in clamps that give it does not
+// cancel.
 TEST(BlindWire, NaturalCurvatureActsOnlyThroughGivingClamps) {
   const auto travel = up(3e-3, 6);
   BlindWire wire = declared(0.065, 0.00675);

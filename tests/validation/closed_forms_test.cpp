@@ -48,7 +48,8 @@ TEST(ClosedForms, TensionedClampedWireTendsToTheBeam) {
 }
 
 TEST(ClosedForms, TensionedClampedWireTendsToTheString) {
-  // Clamps and load shorten each side by sqrt(EI/T): relative excess 2 sqrt(EI/T) (1/s + 1/(l-s)) l/l at most.
+  // Clamps and load shorten each side by sqrt(EI/T): relative excess 2 sqrt(EI/T) (1/s + 1/(l-s)) l/l at
+  // most.
   for (const double tension : {1e4, 1e6, 1e10}) {
     const double layer = std::sqrt(kSolid / tension);
     for (const Stiffness& row : kPrinted) {

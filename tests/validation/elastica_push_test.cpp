@@ -155,8 +155,9 @@ TEST(ElasticaPush, UnloadedWireOfAnySlackMatchesEllipticIntegrals) {
 }
 
 TEST(ElasticaPush, ShallowLimitOutward) {
-  // Error of first order in the slack. At 1e-4 it is 0.31 % at P = 20, s = 0.5 (near the unloaded height, where the
-  // force changes fastest) and less elsewhere; extrapolated to no slack what is left is of second order, 1e-6.
+  // Error of first order in the slack. At 1e-4 it is 0.31 % at P = 20, s = 0.5 (near the unloaded height,
+  // where the force changes fastest) and less elsewhere; extrapolated to no slack what is left is of second
+  // order, 1e-6.
   for (const double position : {0.5, 0.4}) {
     for (const double compression : {20.0, 0.0, -100.0}) {
       const ShallowState wanted = shallow_state(compression, position);
@@ -260,7 +261,8 @@ TEST(ElasticaPush, FirstTouchOfACylinderIsTheNearestPoint) {
   for (const ElasticaPoint& p : push(fine, 0.0).shape) {
     nearest = std::min(nearest, std::hypot(p.x - problem.position, p.y - state.pusher_height));
   }
-  // The unloaded wire sampled every 1.8 mm: the nearest sample is at most 0.9^2/(2 x 8) mm too far, never nearer.
+  // The unloaded wire sampled every 1.8 mm: the nearest sample is at most 0.9^2/(2 x 8) mm too far, never
+  // nearer.
   EXPECT_GT(nearest, problem.radius - 1e-12);
   EXPECT_LT(nearest, problem.radius + 5.1e-5);
 }
@@ -365,7 +367,8 @@ TEST(ElasticaPush, NaturalCurvatureOnlyMattersBetweenPins) {
   problem.ends = ElasticaEnds::pinned;
   const double curved_pinned = push(problem, 1e-3).force;
   problem.wire.natural_curvature = 0.0;
-  // Between pins 2/m are a moment of EI 2/m = 0.1 N m at the ends, beside about P height = 1 N m at the crown: percents.
+  // Between pins 2/m are a moment of EI 2/m = 0.1 N m at the ends, beside about P height = 1 N m at the
+  // crown: percents.
   EXPECT_GT(std::abs(curved_pinned / push(problem, 1e-3).force - 1.0), 1e-2);
 }
 

@@ -39,8 +39,8 @@ TEST(Elastica, CrownMomentBalances) {
 }
 
 TEST(Elastica, PinnedRodWithEndSlopeOfSixtyDegrees) {
-  // Timoshenko and Gere 1961, table 2-4, of a column clamped at the foot (half of this rod), 60 deg: P/Pcr = 1.152,
-  // reach 0.741 and offset 0.593 of its length.  k = sin 30 deg.
+  // Timoshenko and Gere 1961, table 2-4, of a column clamped at the foot (half of this rod), 60 deg: P/Pcr =
+  // 1.152, reach 0.741 and offset 0.593 of its length.  k = sin 30 deg.
   const double span = 2.0 * std::comp_ellint_2(0.5) / std::comp_ellint_1(0.5) - 1.0;
   const BuckledElastica rod = pinned_elastica(1.0, 1.0, span);
   EXPECT_NEAR(rod.modulus, 0.5, 1e-13);

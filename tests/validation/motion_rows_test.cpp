@@ -1,5 +1,5 @@
-// Those rows of the motion that take seconds, not minutes, under the sanitizers; the test SlowRows runs `snare validate`, which has
-// all.
+// Those rows of the motion that take seconds, not minutes, under the sanitizers; the test SlowRows runs
+// `snare validate`, which has all.
 
 #include "validation/motion_accuracy_checks.hpp"
 #include "validation/motion_checks.hpp"

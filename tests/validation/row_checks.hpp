@@ -8,7 +8,8 @@
 
 namespace snare::validation {
 
-/// Every row is within its limit, every limit is relative to its reference or has a reason, and there are rows.
+/// Every row is within its limit, every limit is relative to its reference or has a reason, and there are
+/// rows.
 inline void expect_within(const std::vector<Row>& rows) {
   EXPECT_FALSE(rows.empty());
   for (const Row& row : rows) {

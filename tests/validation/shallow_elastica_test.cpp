@@ -39,7 +39,8 @@ TEST(ShallowElastica, OutwardTable) {
     EXPECT_NEAR(state.deflection, row.deflection, row.deflection_digit)
         << row.compression << " " << row.position;
   }
-  // 192 EI/l^3 times the deflection sqrt(5/12) at mid-span; taut: sqrt(2 s (1 - s)), printed to six digits at 0.4.
+  // 192 EI/l^3 times the deflection sqrt(5/12) at mid-span; taut: sqrt(2 s (1 - s)), printed to six digits at
+  // 0.4.
   EXPECT_NEAR(shallow_state(0.0, 0.5).force, 192.0 * std::sqrt(5.0 / 12.0), 1e-11);
   EXPECT_NEAR(shallow_taut_deflection(0.5), std::sqrt(0.5), 1e-15);
   EXPECT_NEAR(shallow_taut_deflection(0.4), 0.692820, 5e-7);
@@ -69,8 +70,8 @@ TEST(ShallowElastica, WithoutCompressionItIsTheClampedBeam) {
 }
 
 TEST(ShallowElastica, EndShorteningIsOne) {
-  // The profile is built here by integrating w'''' + P w'' = f delta from the left clamp, with w'' and w''' there
-  // chosen so that w = w' = 0 at the right one, and 1/2 int w'^2 is summed beside it.
+  // The profile is built here by integrating w'''' + P w'' = f delta from the left clamp, with w'' and w'''
+  // there chosen so that w = w' = 0 at the right one, and 1/2 int w'^2 is summed beside it.
   for (const double s : {0.5, 0.3}) {
     for (const double compression : {60.0, 20.0, 0.0, -50.0}) {
       const ShallowState state = shallow_state(compression, s);

@@ -95,8 +95,9 @@ TEST(Cantilever, TwistOfTheClampDoesNotMatterForARoundRod) {
 }
 
 TEST(Cantilever, NaturalCurvatureMakesACircle) {
-  // Three quarters of a turn towards a director that the clamp has turned by 0.6 rad. On a free, untwisted, naturally
-  // curved rod every vertex turns by 2 atan(kappa h/2): an exact polygon, whose inner vertices lie on a circle.
+  // Three quarters of a turn towards a director that the clamp has turned by 0.6 rad. On a free, untwisted,
+  // naturally curved rod every vertex turns by 2 atan(kappa h/2): an exact polygon, whose inner vertices lie
+  // on a circle.
   SpatialRodProperties p;
   p.bending_stiffness = 1.0;
   p.second_bending_stiffness = 2.0;

@@ -21,8 +21,8 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-// The flexibilities of a beam under tension and under compression, from its exact solution by hyperbolic and circular
-// functions, on either side of where powers end and where the ratio of polynomials does.
+// The flexibilities of a beam under tension and under compression, from its exact solution by hyperbolic and
+// circular functions, on either side of where powers end and where the ratio of polynomials does.
 TEST(EdgeBeam, FlexibilitiesAreThoseOfABeamColumn) {
   for (const double z : {-3.9, -1.0, -0.1, -1e-3, 1e-3, 0.07, 0.09, 1.0, 7.9, 8.1, 30.0, 4e3}) {
     const double w = 0.5 * std::sqrt(std::abs(z));
@@ -98,8 +98,8 @@ struct Disturbed {
   }
 };
 
-// Everything at once: not round, naturally bent and twisted, mounts that give, a graded mesh. Balances by places, angles
-// and curvatures are second derivatives, of which the frames' holonomy is no part.
+// Everything at once: not round, naturally bent and twisted, mounts that give, a graded mesh. Balances by
+// places, angles and curvatures are second derivatives, of which the frames' holonomy is no part.
 TEST(CurvedRod, SecondDerivativesMatchDifferences) {
   Disturbed d(disturbed_rod(test::general_properties()), 1.0);
   std::vector<int> unknown, balance;
@@ -139,7 +139,8 @@ TEST(CurvedRod, SecondDerivativesMatchDifferences) {
   EXPECT_LT(error.relative, 1e-9) << error.worst;
 }
 
-// The turning of a vertex pushes its edges across themselves alone: along the last one the mount feels its tension.
+// The turning of a vertex pushes its edges across themselves alone: along the last one the mount feels its
+// tension.
 TEST(CurvedRod, TensionIsWhatTheMountFeels) {
   SpatialRodProperties properties = test::general_properties();
   properties.weight.setZero();
@@ -156,8 +157,8 @@ TEST(CurvedRod, TensionIsWhatTheMountFeels) {
   EXPECT_DOUBLE_EQ(loads.bending_moments[3], stiffness.cwiseProduct(bent).norm());
 }
 
-// In a plane, with damping and at rates. Out of it the holonomy of the frames, which the Jacobian leaves out, acts through
-// the rates of curvature.
+// In a plane, with damping and at rates. Out of it the holonomy of the frames, which the Jacobian leaves out,
+// acts through the rates of curvature.
 TEST(CurvedRod, DampedJacobianMatchesDifferencesInThePlane) {
   SpatialRodProperties p = test::round_properties();
   p.second_bending_stiffness = 1.1;

@@ -1,4 +1,5 @@
-// Localised helical buckling: a long straight rod, its ends counter-rotated by many turns and brought together.
+// Localised helical buckling: a long straight rod, its ends counter-rotated by many turns and brought
+// together.
 
 #include "tests/support/loaded_rod.hpp"
 #include "validation/rod_instability.hpp"
@@ -18,7 +19,8 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-// The public parameters of PyElastica's example HelicalBucklingCase in units of its length, 100: slack 3, 27 turns.
+// The public parameters of PyElastica's example HelicalBucklingCase in units of its length, 100: slack 3, 27
+// turns.
 constexpr double kBending = 1.345;
 constexpr double kTorsion = 0.789;
 constexpr double kShortening = 0.03;
@@ -100,7 +102,8 @@ struct Ends {
   double tension;
 };
 
-// Towards edges of length zero. The mounts lie outside of the localised part: errors of second and fourth order.
+// Towards edges of length zero. The mounts lie outside of the localised part: errors of second and fourth
+// order.
 Ends converged(const std::array<Localised, 3>& results) {
   const auto limit = [&results](double Localised::*value) {
     const double coarse = results[0].*value;
@@ -113,8 +116,9 @@ Ends converged(const std::array<Localised, 3>& results) {
   return {limit(&Localised::moment), limit(&Localised::tension)};
 }
 
-// Largest difference of (cos phi - cos phi_0)/(1 - cos phi_0) from the closed form. Where along the rod the helix sits
-// is almost neutral (its tails at the mounts are exp(-11)), so it is compared about its own centre.
+// Largest difference of (cos phi - cos phi_0)/(1 - cos phi_0) from the closed form. Where along the rod the
+// helix sits is almost neutral (its tails at the mounts are exp(-11)), so it is compared about its own
+// centre.
 double envelope_error(const Localised& result, const validation::HelicalBuckling& exact) {
   const Eigen::Index n = result.cosine.size();
   const Eigen::VectorXd place = Eigen::VectorXd::LinSpaced(n, 0.5, static_cast<double>(n) - 0.5) / n;
@@ -142,7 +146,8 @@ TEST(SlowHelicalBuckling, LocalisedHelix) {
   const Ends b = converged(stiff);
   const validation::HelicalBuckling exact =
       validation::helical_buckling(kBending, kTorsion, 1.0, kShortening, kRotation);
-  // Rest of the extrapolations: sixth order in the edge, 2e-5 of T; square of the strain's influence, (1e-3)^2.
+  // Rest of the extrapolations: sixth order in the edge, 2e-5 of T; square of the strain's influence,
+  // (1e-3)^2.
   EXPECT_NEAR(2.0 * b.moment - a.moment, exact.moment_scaled, 1e-6 * exact.moment_scaled);
   EXPECT_NEAR(2.0 * b.tension - a.tension, exact.tension_scaled, 4e-5 * exact.tension_scaled);
 

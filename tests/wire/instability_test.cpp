@@ -75,7 +75,8 @@ void expect_load(const std::array<double, 3>& compressions, double expected) {
   const test::Extrapolation result = test::extrapolate(
       {effective_load(compressions[0]), effective_load(compressions[1]), effective_load(compressions[2])});
   EXPECT_NEAR(result.order, 2.0, kOrderTolerance);
-  // Fourth-order rest: the relative error at 160 edges is about P h^2/12 = 1e-4, its square times a constant of 10.
+  // Fourth-order rest: the relative error at 160 edges is about P h^2/12 = 1e-4, its square times a constant
+  // of 10.
   EXPECT_NEAR(result.limit, expected, 1e-6 * expected);
 }
 

@@ -17,8 +17,8 @@ WireSpecification music_wire(double diameter) {
   return wire;
 }
 
-// Shigley, example 10-1: music wire no. 16, 0.037 in, has 201 kpsi / 0.037^0.145 = 324 kpsi; that coefficient is rounded to half a
-// per cent.
+// Shigley, example 10-1: music wire no. 16, 0.037 in, has 201 kpsi / 0.037^0.145 = 324 kpsi; that coefficient
+// is rounded to half a per cent.
 TEST(PhysicalRange, StrengthIsThatOfMusicWire) {
   constexpr double kpsi = 6.894757e6;
   EXPECT_NEAR(strongest_wire(0.037 * 25.4e-3), 324.0 * kpsi, 0.005 * 324.0 * kpsi);
@@ -54,8 +54,9 @@ TEST(PhysicalRange, OnlyWhatNoWireHasIsDoubted) {
   EXPECT_EQ(overload(wire, 20e3 / (std::numbers::pi * 0.16e-6)).size(), 1u);  // 20 kN on 0.8 mm
 }
 
-// The critical speed of a blow across: at a strain e the tension's transverse wave runs at c sqrt(e (1 + e)) along the strained wire
-// and the inflow of material at c e must be made up by the kink: v^2 = w^2 - (w - c e)^2 with w = c sqrt(e (1 + e)).
+// The critical speed of a blow across: at a strain e the tension's transverse wave runs at c sqrt(e (1 + e))
+// along the strained wire and the inflow of material at c e must be made up by the kink: v^2 = w^2 - (w - c
+// e)^2 with w = c sqrt(e (1 + e)).
 TEST(PhysicalRange, BreakingSpeedIsThatOfTheKink) {
   const double stiffness = 1e5;
   const double mass = 4e-3;

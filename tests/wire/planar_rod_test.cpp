@@ -64,7 +64,8 @@ TEST(PlanarRod, HeldRowsAreThoseOfTheIdentity) {
 }
 
 TEST(PlanarRod, MomentsOfACircularArc) {
-  // A free rod on a circle has M = EI (curvature - natural) at every inner vertex, to second order in the edge.
+  // A free rod on a circle has M = EI (curvature - natural) at every inner vertex, to second order in the
+  // edge.
   PlanarRodProperties p;
   p.bending_stiffness = 0.7;
   p.axial_stiffness = 5.0;

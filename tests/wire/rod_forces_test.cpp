@@ -21,7 +21,8 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::VectorXd;
 
-/// A crooked rod of some elements in motion: bent and twisted so much that every formula for small angles ends somewhere.
+/// A crooked rod of some elements in motion: bent and twisted so much that every formula for small angles
+/// ends somewhere.
 struct Crooked {
   int elements;
   Formulation formulation;

@@ -45,8 +45,8 @@ TEST(RodModes, OfAClampedBeamBendOnly) {
   }
 }
 
-// With curvatures as unknowns a dozen elements do: masses at the vertices alone keep the fourth order, as the exact
-// flexibility has no kink below its third derivative.
+// With curvatures as unknowns a dozen elements do: masses at the vertices alone keep the fourth order, as the
+// exact flexibility has no kink below its third derivative.
 TEST(RodModes, OfHigherOrderConvergeFaster) {
   const auto errors = [](SpatialEnd::Kind kind, int elements) {
     const double tension = kind == SpatialEnd::Kind::pin ? 50.0 : 0.0;

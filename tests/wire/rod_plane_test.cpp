@@ -120,7 +120,8 @@ TEST_P(RodInPlane, FeelsNothingAcrossIt) {
           << system.layout().name_of(v) << " by " << system.layout().name_of(u);
     }
   }
-  // Held, they are 1 of their own rows, and what is left is as it was: by the formulas of space, and by those of the plane.
+  // Held, they are 1 of their own rows, and what is left is as it was: by the formulas of space, and by those
+  // of the plane.
   system.hold(across);
   for (const bool in_plane : {false, true}) {
     if (in_plane) EXPECT_EQ(part.restrict_to_plane(*plane), across);

@@ -40,8 +40,10 @@ TEST(SectionLaw, EnergyIsTheWork) {
   }
 }
 
-// Bending moment of a round elastic-perfectly plastic section, with eta = y_yield/r < 1 (any text on plasticity):
-//   M/M_e = (2/pi) [ (5 - 2 eta^2) sqrt(1 - eta^2) / 3 + arcsin(eta)/eta ], M_e = E I 2 yield strain / d; 16/(3 pi) M_e at last.
+// Bending moment of a round elastic-perfectly plastic section, with eta = y_yield/r < 1 (any text on
+// plasticity):
+//   M/M_e = (2/pi) [ (5 - 2 eta^2) sqrt(1 - eta^2) / 3 + arcsin(eta)/eta ],
+//   M_e = E I 2 yield strain / d; 16/(3 pi) M_e at last.
 TEST(SectionLaw, YieldingSectionFollowsTheRoundBar) {
   const double ei = 2.0, diameter = 1.5e-3, yield = 3e-3, hardening = 1e-6;
   const std::vector<SliderElement> fibres = yielding_section(ei, diameter, yield, hardening);

@@ -146,7 +146,8 @@ TEST(SpatialRod, EnergyIsInvariantAndGradientTurnsWithTheRod) {
     for (int i = 0; i < rod.mesh().vertices(); ++i) {
       expected.segment<3>(4 * i) = turn * Vector3d(at.gradient.segment<3>(4 * i));
     }
-    // Coordinates of order one lose eps on edges of 0.1: 1e-15 relative, times the stiffness ratio 1e2 to 1e3.
+    // Coordinates of order one lose eps on edges of 0.1: 1e-15 relative, times the stiffness ratio 1e2 to
+    // 1e3.
     EXPECT_NEAR(there.energy, at.energy, 1e-12 * at.energy);
     EXPECT_LT((there.gradient - expected).lpNorm<Eigen::Infinity>(),
               1e-11 * expected.lpNorm<Eigen::Infinity>());

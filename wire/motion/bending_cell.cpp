@@ -77,7 +77,8 @@ BendingCell::BendingCell(const RodModel& model, const RodInstant& instant, const
     : end_(model.end_of(i)) {
   const SpatialState& state = instant.state;
   const int n = model.edges();
-  // Directions and directors of the edges before and after; at an end those of the mount stand for the outer edge.
+  // Directions and directors of the edges before and after; at an end those of the mount stand for the outer
+  // edge.
   const auto add_edge = [&](int e, int angle, Directors& directors, double& inverse_length) {
     if (e < 0 || e >= n) {
       const Frame& frame = e < 0 ? *state.left_mount : *state.right_mount;
@@ -94,8 +95,8 @@ BendingCell::BendingCell(const RodModel& model, const RodInstant& instant, const
   const Vector3d tangent_after = add_edge(i, Rows::angle_after, after, inverse.b);
   turn = make_turn<double>(tangent_before, tangent_after);
   if (model.is_curved() && end_) {
-    // What the first edge turns from its mount is integral (1 - s/h) k ds, whose centre is at h/3: of the directors at 0
-    // and at h/2 it takes 1/3 and 2/3 (W.31).
+    // What the first edge turns from its mount is integral (1 - s/h) k ds, whose centre is at h/3: of the
+    // directors at 0 and at h/2 it takes 1/3 and 2/3 (W.31).
     const double mount = 2.0 / 3.0;
     const double edge = 4.0 / 3.0;
     const bool left = *end_ == End::left;
@@ -108,7 +109,8 @@ BendingCell::BendingCell(const RodModel& model, const RodInstant& instant, const
   rate.segment<3>(Rows::middle) = at.y.segment<3>(model.velocity_of(i));
   if (i < n) rate.segment<3>(Rows::after) = at.y.segment<3>(model.velocity_of(i + 1));
 
-  // A mount that spins with w carries the frame in which the edge e beside it bends: e' - w x e, theta' - w.t.
+  // A mount that spins with w carries the frame in which the edge e beside it bends: e' - w x e, theta' -
+  // w.t.
   if (end_ && instant.spin[index_of(*end_)]) {
     spin_ = *instant.spin[index_of(*end_)];
     const int e = model.edge_at(*end_);

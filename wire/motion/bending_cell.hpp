@@ -8,7 +8,8 @@
 
 namespace snare::wire {
 
-/// Unknowns of a vertex's cell: x_{i-1}, theta_{i-1}, x_i, theta_i, x_{i+1}; band index block (i - 1) + local.
+/// Unknowns of a vertex's cell: x_{i-1}, theta_{i-1}, x_i, theta_i, x_{i+1}; band index block (i - 1) +
+/// local.
 struct CellRows {
   static constexpr int before = 0;        ///< x_{i-1} (3)
   static constexpr int angle_before = 3;  ///< theta_{i-1}

@@ -11,7 +11,8 @@
 
 namespace snare::wire {
 
-/// An edge of the rod of higher order: a beam between two vertices, whose curvatures EI k at its ends and whose
+/// An edge of the rod of higher order: a beam between two vertices, whose curvatures EI k at its ends and
+/// whose
 /// tension bend it off its chord.                                                            theory.md (W.32)
 struct EdgeBeamConstants {
   double rest = 0.0;                                            ///< unstretched length h [m], > 0
@@ -19,10 +20,11 @@ struct EdgeBeamConstants {
   Eigen::Vector2d bending_stiffness = Eigen::Vector2d::Zero();  ///< EI_1, EI_2 [N m^2], > 0
 };
 
-/// Its energy as a function of the chord l and of the curvatures k_a, k_b (of kappa_1, kappa_2) at its ends, and the
-/// derivatives by (l, k_a1, k_a2, k_b1, k_b2).
+/// Its energy as a function of the chord l and of the curvatures k_a, k_b (of kappa_1, kappa_2) at its ends,
+/// and the derivatives by (l, k_a1, k_a2, k_b1, k_b2).
 ///
-///   E = stat_N [ N (l - h) - N^2 h/(2 EA) - h/4 sum_j EI_j (C(z_j) (k_a + k_b)_j^2 + D(z_j) (k_a - k_b)_j^2) ]
+///   E = stat_N [ N (l - h) - N^2 h/(2 EA)
+///       - h/4 sum_j EI_j (C(z_j) (k_a + k_b)_j^2 + D(z_j) (k_a - k_b)_j^2) ]
 ///   z_j = N (1 + N/EA) h^2/EI_j,   C = tanh(w)/(2 w),   D = (w coth w - 1)/(2 w^2),   w = sqrt(z)/2
 ///
 /// The vertices' terms EI k phi make it the energy of the rod, stationary in k.
@@ -43,7 +45,7 @@ struct FlexibilityOf {
   S value, first, second;  ///< C or D and its derivatives by z [-]
 };
 using Flexibility = FlexibilityOf<double>;
-/// C of a beam whose ends turn alike, D of one whose ends turn against each other.             theory.md (W.32)
+/// C of a beam whose ends turn alike, D of one whose ends turn against each other.           theory.md (W.32)
 /// For z < -4, a compression of 4/pi^2 of the load that buckles the edge itself, their parabolas at -4.
 template <class S>
 struct FlexibilitiesOf {
@@ -71,7 +73,8 @@ template <class S>
                                             const Pair<S>& far, double axial_stiffness,
                                             const Pair<double>& bending_stiffness);
 
-/// Second derivatives of its energy by the chord and the curvatures at its ends; blocks of the latter by rows.
+/// Second derivatives of its energy by the chord and the curvatures at its ends; blocks of the latter by
+/// rows.
 template <class S>
 struct BeamStiffness {
   S chord;                           ///< [N/m]
@@ -136,9 +139,9 @@ template <class S>
   f.first += dz * f.second;
 }
 
-// C = y/2 with y = tanh(w)/w, D = g/2 with g = (w coth w - 1)/w^2. By y = 1/(1 + x g) and g = 1/(3 + x/(5 + x/(7 + ...))), of
-// which nine denominators leave 1e-16 and 2e-13 of the second derivative; and by 2 x y' = 1 - y - x y^2 and g = (1/y - 1)/x
-// with their derivatives.
+// C = y/2 with y = tanh(w)/w, D = g/2 with g = (w coth w - 1)/w^2. By y = 1/(1 + x g) and g = 1/(3 + x/(5 +
+// x/(7 + ...))), of which nine denominators leave 1e-16 and 2e-13 of the second derivative; and by 2 x y' = 1
+// - y - x y^2 and g = (1/y - 1)/x with their derivatives.
 template <class S>
 [[nodiscard, gnu::always_inline]] inline FlexibilitiesOf<S> of_small(const S& x) {
   constexpr std::array over{218243025.0, 16081065.0, 289575.0, 1430.0, 1.0};
@@ -189,8 +192,9 @@ template <class S>
   }
 }
 
-// l - h = N h/EA + dW/dN with W(P) = h/4 sum EI (C s^2 + D d^2), s and d sum and difference of k_a and k_b: its right side
-// rises with N and is concave but for the square of the strain, so that Newton's method converges.
+// l - h = N h/EA + dW/dN with W(P) = h/4 sum EI (C s^2 + D d^2), s and d sum and difference of k_a and k_b:
+// its right side rises with N and is concave but for the square of the strain, so that Newton's method
+// converges.
 template <class S>
 [[nodiscard, gnu::always_inline]] inline BalancedBeam<S> balanced_beam(const S& rest, const S& chord,
                                                                        const Pair<S>& near,

@@ -18,16 +18,17 @@ using numerics::DaePoint;
 
 namespace {
 
-// Of edge, angle and curvatures: rows and columns 0 to 2 belong to the edge vector e, 3 to theta, 4 and 5 to k.
+// Of edge, angle and curvatures: rows and columns 0 to 2 belong to the edge vector e, 3 to theta, 4 and 5 to
+// k.
 constexpr int angle = 3;
 constexpr int count = 6;
 using Vector6d = Eigen::Matrix<double, count, 1>;
 using Matrix6d = Eigen::Matrix<double, count, count>;
 using Turned = Eigen::Matrix<double, count, 3>;
 
-/// What acts between a mount and the edge beside it: generalised force (g, gamma) on edge and angle and the rows of
-/// the curvatures, the derivatives by these at fixed rates relative to the mount, and by the relative rates
-/// e' - w x e, theta' - w.t.
+/// What acts between a mount and the edge beside it: generalised force (g, gamma) on edge and angle and the
+/// rows of the curvatures, the derivatives by these at fixed rates relative to the mount, and by the relative
+/// rates e' - w x e, theta' - w.t.
 struct EdgeForce {
   Vector6d force = Vector6d::Zero();
   Matrix6d by_place = Matrix6d::Zero(), by_rate = Matrix6d::Zero();
@@ -104,8 +105,8 @@ MountCell mount_cell(const RodModel& model, const RodInstant& instant, const Dae
   turned_rate.topRows<3>() = -cross_matrix(f.edge_rate);
   spun.topRows<4>() << cross_matrix(f.edge), -f.tangent.transpose();
 
-  // A turn of the mount alone: (phi x g, 0, 0) less what the turn of the edge does. The relative rates at fixed
-  // spin, e' - w x e, have nothing that turns with the mount but are seen from it.
+  // A turn of the mount alone: (phi x g, 0, 0) less what the turn of the edge does. The relative rates at
+  // fixed spin, e' - w x e, have nothing that turns with the mount but are seen from it.
   Turned by_turn = -f.by_place * turned - f.by_rate * turned_rate;
   by_turn.topRows<3>() -= cross_matrix(g);
   const Turned by_spin = f.by_rate * spun;
@@ -118,7 +119,8 @@ MountCell mount_cell(const RodModel& model, const RodInstant& instant, const Dae
   by_edge.leftCols<3>() += -cross_matrix(g) + gamma * across;
   const Eigen::Matrix<double, 3, count> by_edge_rate = moment(f.by_rate);
 
-  // From edge, angle and curvatures to the two vertices, the angle and the curvatures: e = sign (next - mount).
+  // From edge, angle and curvatures to the two vertices, the angle and the curvatures: e = sign (next -
+  // mount).
   const double sign = end == End::left ? 1.0 : -1.0;
   const auto columns = [&](const Eigen::Matrix<double, 3, count>& m) {
     MountCell::ByUnknowns wide;

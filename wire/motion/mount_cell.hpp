@@ -13,10 +13,11 @@ namespace snare::wire {
 ///
 ///   M = e x g + gamma t,   e = x_{i+1} - x_i of the edge, t = e/|e|, g = dE/de [N], gamma = dE/dtheta [N m]
 ///
-/// with Kelvin-Voigt parts in g and gamma. All in the world; turn and spin (angular velocity) are the mount's.
+/// with Kelvin-Voigt parts in g and gamma. All in the world; turn and spin (angular velocity) are the
+/// mount's.
 struct MountCell {
-  /// Local unknowns, and rows of their balances: the vertex at the mount, the next one, the angle of the edge, and the
-  /// curvatures of the vertex at the mount; these are zero but with a rod of higher order.
+  /// Local unknowns, and rows of their balances: the vertex at the mount, the next one, the angle of the
+  /// edge, and the curvatures of the vertex at the mount; these are zero but with a rod of higher order.
   static constexpr int mount = 0, next = 3, angle = 6, curvature = 7, count = 9;
   using ByUnknowns = Eigen::Matrix<double, 3, count>;
   using Rows = Eigen::Matrix<double, count, 3>;

@@ -6,8 +6,8 @@
 
 namespace snare::wire {
 
-/// Four vertices between the ends of a rod in motion, from i on, as its rows have them: their twisting, what they bend about, and
-/// bending of rods whose vertices have it.
+/// Four vertices between the ends of a rod in motion, from i on, as its rows have them: their twisting, what
+/// they bend about, and bending of rods whose vertices have it.
 struct InnerCells {
   numerics::Lanes there;   ///< 1, or 0 where no vertex is
   numerics::Lanes length;  ///< of the cells [m]

@@ -94,7 +94,8 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
   }
 }
 
-// Frames go from the last accepted state to the point's; then what an edge does by its stretch and the bow of its beam.
+// Frames go from the last accepted state to the point's; then what an edge does by its stretch and the bow of
+// its beam.
 [[gnu::always_inline]] inline void RodForces::work_on_edges(const RodModel& model, RodInstant& trial,
                                                             const RodSums& out) {
   const int n = model.edges();
@@ -162,9 +163,9 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
   }
 }
 
-// Twisting and bending of the vertices between the ends, all as one gradient by their two edges: of the cosine, of curvatures
-// with the sum of their weights, of the twist. The moment M_j = tau EI_j/l kappa_j' + k_x m_j of damping and strands is one of
-// these weights.
+// Twisting and bending of the vertices between the ends, all as one gradient by their two edges: of the
+// cosine, of curvatures with the sum of their weights, of the twist. The moment M_j = tau EI_j/l kappa_j' +
+// k_x m_j of damping and strands is one of these weights.
 [[gnu::always_inline]] inline void RodForces::work_on_vertices(const RodModel& model, const DaePoint& at,
                                                                RodInstant& trial, const RodSums& out) {
   const int n = model.edges();
@@ -270,7 +271,8 @@ void RodForces::turn_frames(RodInstant& trial) const {
   }
 }
 
-// From edges to vertices: what pulls at the edge behind and at the one before, and half the weight of both (W.8).
+// From edges to vertices: what pulls at the edge behind and at the one before, and half the weight of both
+// (W.8).
 void RodForces::gather(const RodModel& model, const RodSums& out) {
   constexpr int block = RodModel::block;
   const int n = model.edges();

@@ -33,7 +33,8 @@ struct RodStrands {
 /// How a wire's bending is discretised.
 enum class Formulation {
   vertices,  ///< curvature lumped at the vertices, chords that stretch: second order                  (W.27)
-  higher_order  ///< curvatures as unknowns, edges as beams: fourth order for loads on vertices, (W.31) to (W.33)
+  /// curvatures as unknowns, edges as beams: fourth order for loads on vertices, (W.31) to (W.33)
+  higher_order
 };
 
 /// Constants of a wire in motion.
@@ -44,7 +45,8 @@ struct RodInMotion {
   int elements = 60;                ///< >= 4
   double grading = 0.0;             ///< of the mesh, see MaterialMesh; 0: equal edges
   Formulation formulation = Formulation::vertices;
-  /// All but a thousandth of its inertia is left out: positions follow the forces at once, but for what damping delays (M.18).
+  /// All but a thousandth of its inertia is left out: positions follow the forces at once, but for what
+  /// damping delays (M.18).
   bool quasi_static = false;
   RodDamping damping;
   RodStrands strands;

@@ -25,8 +25,9 @@ using stiffness::entry;
 using stiffness::entry_of_two;
 using Row = RodRow;
 
-/// How four vertices between the ends of a rod in a plane turn, from i on, as its rows have them, and what they do to the edges: with the
-/// tangent t = (t_u, t_v) the angle of an edge changes by (-t_v, t_u)/length.                                 theory.md (W.2), (W.3)
+/// How four vertices between the ends of a rod in a plane turn, from i on, as its rows have them, and what
+/// they do to the edges: with the
+/// tangent t = (t_u, t_v) the angle of an edge changes by (-t_v, t_u)/length.          theory.md (W.2), (W.3)
 struct PlaneTurn {
   Lanes before_u, before_v, after_u, after_v;  ///< tangents
   Lanes inverse_a, inverse_b;                  ///< of the edges' lengths [1/m]
@@ -115,8 +116,9 @@ struct PlaneTurn {
     std::fill_n(rows.row(Row::tangent + r) + n, Lanes::count, rows.row(Row::tangent + r)[n - 1]);
 }
 
-// A vertex turns by phi with kappa = 2 tan(phi/2), kappa' = 1 + kappa^2/4, whose moment M = dE/dphi + tau EI/l kappa'^2 phi' acts
-// across both edges (W.3): by the edge after (-t_v, t_u)/|b|, by the one before the same of it with the other sign.
+// A vertex turns by phi with kappa = 2 tan(phi/2), kappa' = 1 + kappa^2/4, whose moment M = dE/dphi + tau
+// EI/l kappa'^2 phi' acts across both edges (W.3): by the edge after (-t_v, t_u)/|b|, by the one before the
+// same of it with the other sign.
 [[gnu::always_inline]] inline void work_on_vertices(const RodModel& model, const RodPlane& plane,
                                                     const DaePoint& at, RodRows& rows, const RodSums& out) {
   const int n = model.edges();
@@ -227,9 +229,10 @@ struct PlaneTurn {
   }
 }
 
-// With g and H the derivatives of phi by the edges, r the rates of these and h = H r: the moment M(phi) has  M' g g^T + M H,  and
-// damping Q = tau EI/l kappa'^2 phi' by the places  Q H + tau EI/l kappa'^2 (kappa phi' g g^T + g h^T)  and by the rates
-// tau EI/l kappa'^2 g g^T.  Of an edge b at the angle alpha  dalpha/db = n/|b|,  d2alpha/db2 = -(n t^T + t n^T)/|b|^2.
+// With g and H the derivatives of phi by the edges, r the rates of these and h = H r: the moment M(phi) has
+// M' g g^T + M H,  and damping Q = tau EI/l kappa'^2 phi' by the places  Q H + tau EI/l kappa'^2 (kappa phi'
+// g g^T + g h^T)  and by the rates tau EI/l kappa'^2 g g^T.  Of an edge b at the angle alpha  dalpha/db =
+// n/|b|,  d2alpha/db2 = -(n t^T + t n^T)/|b|^2.
 [[gnu::always_inline]] inline void differentiate_vertices(const RodModel& model, const RodPlane& plane,
                                                           const RodRows& rows, RodRows& blocks) {
   const int n = model.edges();

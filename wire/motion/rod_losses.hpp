@@ -18,7 +18,8 @@ struct RodLosses {
   std::vector<Eigen::Vector2d> strand_rates;                        ///< z' of every vertex [1/(m s)]
 };
 
-/// Where what a rod does at a point goes: its energy and its forces by bands, dE/dk [N m^2] of higher order, and the losses. All stay the caller's.
+/// Where what a rod does at a point goes: its energy and its forces by bands, dE/dk [N m^2] of higher order,
+/// and the losses. All stay the caller's.
 struct RodSums {
   RodAssembly& assembly;
   Eigen::Matrix2Xd& by_curvature;

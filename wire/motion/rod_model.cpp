@@ -18,8 +18,9 @@ MaterialMesh checked_mesh(const RodInMotion& rod) {
   return rod.mesh();
 }
 
-/// Kelvin-Voigt time of bending of a quasi-static wire, at least [s]: 2/omega of the tenth mode, between pins, of the inertia that it keeps.
-/// Its waves stand for nothing; where nothing damps them the integrator follows them.                        theory.md (M.18)
+/// Kelvin-Voigt time of bending of a quasi-static wire, at least [s]: 2/omega of the tenth mode, between
+/// pins, of the inertia that it keeps.
+/// Its waves stand for nothing; where nothing damps them the integrator follows them.        theory.md (M.18)
 double damping_of_waves(const RodInMotion& rod, double share) {
   constexpr double mode = 10.0;
   const double number = mode * std::numbers::pi / rod.length;  // of the wave [1/m]

@@ -19,9 +19,9 @@ namespace snare::wire {
 /// What of a rod in a DAE does not change: its constants, its masses, what is held, and where its unknowns
 /// are.
 ///
-/// Vertices have positions x and velocities v, edges angles theta, with strands vertices have z as well, of higher order
-/// curvatures k. The
-/// rod's own numbering, (x_0, theta_0, x_1, ...), is called band: that of its Hessian.
+/// Vertices have positions x and velocities v, edges angles theta, with strands vertices have z as well, of
+/// higher order curvatures k. The rod's own numbering, (x_0, theta_0, x_1, ...), is called band: that of its
+/// Hessian.
 class RodModel {
  public:
   static constexpr int block = SpatialRod::block;
@@ -55,8 +55,9 @@ class RodModel {
   /// Unstretched length of an edge [m]; lumped mass of a vertex [kg].
   [[nodiscard]] double rest_length(int edge) const { return rod_.mesh().rest_length(edge, controls_); }
   [[nodiscard]] double mass_of(int vertex) const { return mass_[base::at(vertex)]; }
-  /// Of the masses what resists acceleration: all, or of a quasi-static wire so little that no wave is felt, and what friction
-  /// lets go still passes from one place to the next.                                         theory.md (M.18)
+  /// Of the masses what resists acceleration: all, or of a quasi-static wire so little that no wave is felt,
+  /// and what friction
+  /// lets go still passes from one place to the next.                                        theory.md (M.18)
   /// 1, or 1e-3 where it is quasi-static [-]; the mass that resists acceleration then [kg].
   [[nodiscard]] double inertial_share() const { return constants_.quasi_static ? 1e-3 : 1.0; }
   [[nodiscard]] double inertia_of(int vertex) const { return inertial_share() * mass_of(vertex); }
@@ -74,7 +75,8 @@ class RodModel {
   /// The vertex at an end is no longer held.
   void release(End end);
 
-  /// Appends the rod's blocks, named behind `name`, to a DAE's unknowns; from here on the places below are known.
+  /// Appends the rod's blocks, named behind `name`, to a DAE's unknowns; from here on the places below are
+  /// known.
   void declare(numerics::DaeLayout& layout, const std::string& name, const RodTolerances& tolerances);
   [[nodiscard]] int position_of(int vertex) const { return x_ + 3 * vertex; }  ///< first of three
   [[nodiscard]] int velocity_of(int vertex) const { return v_ + 3 * vertex; }

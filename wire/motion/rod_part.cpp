@@ -64,7 +64,8 @@ namespace {
 
 constexpr double round_off = 1e-12;  // of directions [-], and of places [m]
 
-/// Whether a mount is its own mirror image in the plane across an axis at a place on it; one that gives does so along x.
+/// Whether a mount is its own mirror image in the plane across an axis at a place on it; one that gives does
+/// so along x.
 bool is_mirrored(const SpatialEnd& end, int normal, double offset) {
   if (end.kind == SpatialEnd::Kind::free) return true;
   if (std::abs(end.position[normal] - offset) > round_off || (end.gives() && normal == 0)) return false;
@@ -112,7 +113,8 @@ void RodPart::work_in(const std::optional<RodPlane>& plane) {
   y_.resize(0);
 }
 
-// The angles theta are odd, and of curvatures and strands those towards the director that stands across the plane.
+// The angles theta are odd, and of curvatures and strands those towards the director that stands across the
+// plane.
 std::vector<int> RodPart::restrict_to_plane(const RodPlane& plane) {
   work_in(plane);
   std::vector<int> unknowns;

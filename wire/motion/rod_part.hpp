@@ -26,7 +26,7 @@ namespace snare::wire {
 
 /// A discrete elastic rod as part of a DAE: vertices x, their velocities v, edge angles theta without
 /// inertia, of higher order curvatures k as well.
-///                                                                                  theory.md (M.3), (M.4)
+///                                                                                     theory.md (M.3), (M.4)
 ///   x' - v = 0,   m v' + dE/dx + dD/dv + a m v = 0,   dE/dtheta + dD/dtheta' = 0,   dE/dk = 0
 ///
 /// with lumped masses m and D = sum tau/2 k (d strain/dt)^2. With strands two unknowns z a vertex are added,
@@ -54,20 +54,22 @@ class RodPart final : public numerics::DaePart {
   /// What its places, speeds and angles may err by.
   [[nodiscard]] const RodTolerances& tolerances() const { return tolerances_; }
 
-  /// Puts a start, (3, vertices) [m] and [m/s], into the unknowns (twist angles zero) and lets the reference frames begin there.
+  /// Puts a start, (3, vertices) [m] and [m/s], into the unknowns (twist angles zero) and lets the reference
+  /// frames begin there.
   void place(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& velocities, Eigen::VectorXd& y);
 
-  /// The plane across axis `normal` of the world (0 to 2) in which the rod stays, since at its start it is its own mirror image there, to round-off:
+  /// The plane across axis `normal` of the world (0 to 2) in which the rod stays, since at its start it is
+  /// its own mirror image there, to round-off:
   /// its places, mounts, frames, weight and what it is by nature. None where it is not.      theory.md (M.36)
   [[nodiscard]] std::optional<RodPlane> plane_across(int normal) const;
-  /// Works out from here on only what happens in a plane, in which it has to be. Returns the unknowns that leave the plane, or turn out of it, which
-  /// have to be held.
+  /// Works out from here on only what happens in a plane, in which it has to be. Returns the unknowns that
+  /// leave the plane, or turn out of it, which have to be held.
   [[nodiscard]] std::vector<int> restrict_to_plane(const RodPlane& plane);
   /// What happens in space is worked out again.
   void leave_plane();
 
-  /// Before `declare`: the mount of one end moves, as it does at unknowns y (SI units). The vertex there is no longer held by this part: a
-  /// constraint has to.
+  /// Before `declare`: the mount of one end moves, as it does at unknowns y (SI units). The vertex there is
+  /// no longer held by this part: a constraint has to.
   void carry(End end, std::function<MountMotion(const numerics::VectorView& y)> motion);
   [[nodiscard]] bool is_carried(End end) const { return static_cast<bool>(carried_[index_of(end)]); }
   /// The half cell at a mount that moves.
@@ -80,7 +82,8 @@ class RodPart final : public numerics::DaePart {
   [[nodiscard]] const RodInMotion& constants() const { return model_.constants(); }
   [[nodiscard]] const SpatialRod& rod() const { return model_.rod(); }
   [[nodiscard]] int vertices() const { return model_.vertices(); }
-  /// Vertices there are, and first unknown of a vertex's place, of its velocity, and unknown of an edge's angle: see RodModel.
+  /// Vertices there are, and first unknown of a vertex's place, of its velocity, and unknown of an edge's
+  /// angle: see RodModel.
   [[nodiscard]] int position_of(int vertex) const { return model_.position_of(vertex); }
   [[nodiscard]] int velocity_of(int vertex) const { return model_.velocity_of(vertex); }
   [[nodiscard]] int angle_of(int edge) const { return model_.angle_of(edge); }
@@ -123,7 +126,7 @@ class RodPart final : public numerics::DaePart {
   };
   [[nodiscard]] SectionLoads section_loads(const numerics::DaePoint& at);
 
-  /// What a quasi-static wire would have more, were all its mass counted.                      theory.md (M.18)
+  /// What a quasi-static wire would have more, were all its mass counted.                    theory.md (M.18)
   struct LeftOut {
     double kinetic = 0.0;                                ///< [J]
     Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  ///< [kg m/s]

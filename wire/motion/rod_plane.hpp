@@ -4,7 +4,7 @@
 
 namespace snare::wire {
 
-/// A plane in which a rod stays, across an axis of the world.                                  theory.md (M.36)
+/// A plane in which a rod stays, across an axis of the world.                                theory.md (M.36)
 struct RodPlane {
   int normal = 2;                    ///< the axis: 0, 1, 2
   std::array<int, 2> axes = {0, 1};  ///< the other two, which turn left about it

@@ -33,9 +33,9 @@ void spread_twist(const RodPart& part, VectorXd& y) {
 
 }  // namespace
 
-// The Jacobian at c is that of the balances with m c^2 added to the stiffness. c falls from a frequency at which only
-// twist and curvatures follow to one below all others: a swing about the chord, which nothing holds between pins, then
-// does not make it singular, and Newton's method still converges by 1e-6 a step.
+// The Jacobian at c is that of the balances with m c^2 added to the stiffness. c falls from a frequency at
+// which only twist and curvatures follow to one below all others: a swing about the chord, which nothing
+// holds between pins, then does not make it singular, and Newton's method still converges by 1e-6 a step.
 RodRest find_rest(const RodInMotion& constants, const Eigen::Matrix3Xd& start) {
   RodInMotion rod = constants;
   rod.damping = {};

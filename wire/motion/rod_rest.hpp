@@ -14,8 +14,9 @@ struct RodRest {
   numerics::SolveReport report;
 };
 
-/// The equilibrium of a wire in motion near `start` (3, vertices) [m], stable or not: Newton's method on the residual of
-/// RodPart itself without velocities, so that a motion begins where the same discrete rod rests. Strands hold nothing.
+/// The equilibrium of a wire in motion near `start` (3, vertices) [m], stable or not: Newton's method on the
+/// residual of RodPart itself without velocities, so that a motion begins where the same discrete rod rests.
+/// Strands hold nothing.
 [[nodiscard]] RodRest find_rest(const RodInMotion& rod, const Eigen::Matrix3Xd& start);
 
 }  // namespace snare::wire

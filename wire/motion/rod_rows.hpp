@@ -8,8 +8,8 @@
 
 namespace snare::wire {
 
-/// Which rows a rod in motion has at a point: of its vertices, of its edges, and of which number stands for one. Vectors have
-/// three rows.
+/// Which rows a rod in motion has at a point: of its vertices, of its edges, and of which number stands for
+/// one. Vectors have three rows.
 struct RodRow {
   enum : int {
     place = 0,
@@ -37,8 +37,8 @@ struct RodRow {
   };
 };
 
-/// Rows of numbers, one for each vertex or edge of a rod, with some before and behind that stand for none, so that four can be
-/// taken at once everywhere.
+/// Rows of numbers, one for each vertex or edge of a rod, with some before and behind that stand for none, so
+/// that four can be taken at once everywhere.
 class RodRows {
  public:
   RodRows(int count, int vertices)

@@ -7,7 +7,8 @@ namespace snare::wire {
 
 namespace {
 
-/// Whether two unknowns of the band are in one cell: x_{i-1}, x_i, x_{i+1} and the angles of the edges between.
+/// Whether two unknowns of the band are in one cell: x_{i-1}, x_i, x_{i+1} and the angles of the edges
+/// between.
 bool share_a_cell(int i, int j) {
   const int between = j / RodModel::block - i / RodModel::block;
   const bool angle_i = RodModel::is_angle(i), angle_j = RodModel::is_angle(j);
@@ -109,7 +110,8 @@ namespace {
 
 using CellColumn = std::array<double, CellRows::count>;
 
-/// What a cell does to its balances by one of its unknowns: an angle's rate is c times the angle, a place's an unknown of its own.
+/// What a cell does to its balances by one of its unknowns: an angle's rate is c times the angle, a place's
+/// an unknown of its own.
 template <class Slots>
 void add_column(const Slots& slots, std::size_t column, const CellColumn& by_place, const CellColumn& by_rate,
                 double c, std::vector<double>& values) {

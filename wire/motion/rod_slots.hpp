@@ -30,7 +30,8 @@ class RodSlots {
   /// of coordinates and c times the unknown of angles. None by a mount's angle.
   void add_cell(int i, const CellMatrix& by_place, const CellMatrix& by_rate, double c,
                 std::vector<double>& values) const;
-  /// Two products of vectors: balances by the places, sum_j force_j place_j^T + m, and by the rates, sum_j force_j rate_j^T.
+  /// Two products of vectors: balances by the places, sum_j force_j place_j^T + m, and by the rates, sum_j
+  /// force_j rate_j^T.
   struct CellProducts {
     std::array<CellVector, 2> force, place, rate;
     CellMatrix m;

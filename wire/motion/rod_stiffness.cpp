@@ -24,8 +24,8 @@ using stiffness::entry;
 using stiffness::entry_of_two;
 using stiffness::of_angle;
 
-/// What a vertex's forces are by two edges and their angles: 0 to 2 the edge before, 3 its angle, 4 to 6 the edge after, 7 its
-/// angle.
+/// What a vertex's forces are by two edges and their angles: 0 to 2 the edge before, 3 its angle, 4 to 6 the
+/// edge after, 7 its angle.
 using PairVector = std::array<Lanes, 8>;
 
 [[nodiscard, gnu::always_inline]] inline PairVector listed(const PairGradientOf<Lanes>& g) {
@@ -70,8 +70,8 @@ template <int count, class Work>
 RodStiffness::RodStiffness(const RodModel& model, bool four)
     : four_(four), blocks_(stiffness::Block::blocks, model.vertices()) {}
 
-// An edge by itself: (W.3) or the beam (W.32) with H = H_ll t t^T + N/l (I - t t^T), and its damping. f t with
-// f = tau EA e' by the edge d and by w = v_{i+1} - v_i:
+// An edge by itself: (W.3) or the beam (W.32) with H = H_ll t t^T + N/l (I - t t^T), and its damping. f t
+// with f = tau EA e' by the edge d and by w = v_{i+1} - v_i:
 //   d(f t)/dd = tau EA/h [t (P w)^T + (t.w) P],   d(f t)/dw = tau EA/h t t^T,   P = (I - t t^T)/|d|.
 [[gnu::always_inline]] inline void RodStiffness::work_on_edges(const RodModel& model, const Point& point) {
   const RodRows& rows = point.rows;
@@ -130,10 +130,10 @@ RodStiffness::RodStiffness(const RodModel& model, bool four)
   }
 }
 
-// A vertex between the ends by its two edges. With g_j and H_j the gradient and the Hessian of kappa_j, r the rates of what it
-// depends on and k_j = tau EI_j/l, damping has by the places  sum_j k_j [(g_j.r) H_j + g_j (H_j r)^T]  and by the rates
-// sum_j k_j g_j g_j^T; of higher order w.phi has  sum_j f w_j H_j + (f' d2c + f'' dc dc^T) kappa + f' (dc dkappa^T + dkappa dc^T)
-// with kappa = w.kappa.
+// A vertex between the ends by its two edges. With g_j and H_j the gradient and the Hessian of kappa_j, r the
+// rates of what it depends on and k_j = tau EI_j/l, damping has by the places  sum_j k_j [(g_j.r) H_j + g_j
+// (H_j r)^T]  and by the rates sum_j k_j g_j g_j^T; of higher order w.phi has  sum_j f w_j H_j + (f' d2c +
+// f'' dc dc^T) kappa + f' (dc dkappa^T + dkappa dc^T) with kappa = w.kappa.
 [[gnu::always_inline]] inline void RodStiffness::work_on_vertices(const RodModel& model, const Point& point) {
   const RodRows& rows = point.rows;
   const int n = model.edges();
@@ -282,7 +282,8 @@ void RodStiffness::work_by_two(const RodModel& model, const Point& point) {
 
 namespace {
 
-/// Which components of places, and which of curvatures, are worked out, and whether edges turn about themselves.
+/// Which components of places, and which of curvatures, are worked out, and whether edges turn about
+/// themselves.
 struct InSpace {
   static constexpr std::array<int, 3> axes{0, 1, 2};
   static constexpr std::array<int, 2> curvatures{0, 1};
@@ -295,9 +296,9 @@ struct InPlane {
   static constexpr bool turns = false;
 };
 
-/// Calls by_place(row, column, value), by_rate(row, column, value) for all that vertex i's balances and those of the edge behind it
-/// are by places and angles, and by velocities: rows and columns as bands counted from x_i's; value() is that of four vertices
-/// from i on.
+/// Calls by_place(row, column, value), by_rate(row, column, value) for all that vertex i's balances and those
+/// of the edge behind it are by places and angles, and by velocities: rows and columns as bands counted from
+/// x_i's; value() is that of four vertices from i on.
 template <class Components, class ByPlace, class ByRate>
 [[gnu::always_inline]] inline void visit_bands(const RodRows& blocks, int i, const Components& components,
                                                const ByPlace& by_place, const ByRate& by_rate) {
@@ -340,9 +341,9 @@ template <class Components, class ByPlace, class ByRate>
   by_place(of_angle, of_angle + block, at(entry(next_place, of_angle, of_angle), i));
 }
 
-/// The same of curvatures: by_cell(local, j, value) of the cell's unknown `local` and vertex i's curvature j, for the balance by
-/// the curvature and for its row by the place; own(j, k, value) and next(j, k, value) of its row j by its own curvature k and by
-/// that of the next vertex.
+/// The same of curvatures: by_cell(local, j, value) of the cell's unknown `local` and vertex i's curvature j,
+/// for the balance by the curvature and for its row by the place; own(j, k, value) and next(j, k, value) of
+/// its row j by its own curvature k and by that of the next vertex.
 template <class Components, class ByCell, class Own, class Next>
 [[gnu::always_inline]] inline void visit_curvatures(const RodRows& blocks, int i,
                                                     const Components& components, const ByCell& by_cell,

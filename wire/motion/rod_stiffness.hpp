@@ -12,9 +12,9 @@
 namespace snare::wire {
 
 /// Derivatives of a rod's forces with those of damping, four edges and then four vertices at a time.
-///                                                                                  theory.md (M.3), (M.4), (W.33)
-/// They are added up by edges, of which each has its vector e = x_{i+1} - x_i and its angle: by 4 x 4 blocks D of what an edge
-/// does to itself and to its neighbours. From there they go to the vertices,
+///                                                                             theory.md (M.3), (M.4), (W.33)
+/// They are added up by edges, of which each has its vector e = x_{i+1} - x_i and its angle: by 4 x 4 blocks
+/// D of what an edge does to itself and to its neighbours. From there they go to the vertices,
 ///   K_ij = D_{i-1,j-1} - D_{i-1,j} - D_{i,j-1} + D_ij,
 /// all at once into the values of the Jacobian. The ends, where mounts act, are one by one.
 class RodStiffness {

@@ -2,9 +2,9 @@
 
 namespace snare::wire::stiffness {
 
-/// Rows of blocks, those of an edge's vector and angle being 0 to 3 of each: by places of the edge itself, of the next by it and of
-/// it by the next; by rates of the vectors alone; by the curvatures at its two ends; a vertex's curvatures by themselves and by
-/// the next ones.
+/// Rows of blocks, those of an edge's vector and angle being 0 to 3 of each: by places of the edge itself, of
+/// the next by it and of it by the next; by rates of the vectors alone; by the curvatures at its two ends; a
+/// vertex's curvatures by themselves and by the next ones.
 inline constexpr int of_angle = 3;
 enum Block : int {  // first rows
   own_place = 0,

@@ -23,7 +23,8 @@ struct StrandResponse {
   StrandResponse(const RodStrands& s, const Eigen::Vector2d& held, const Eigen::Vector2d& curvature_rate);
 };
 
-/// What the strands of vertex i answer to rates of its curvatures kappa_j [1/s], as a moment [N m]; what they hold and lose is added. length: of its
+/// What the strands of vertex i answer to rates of its curvatures kappa_j [1/s], as a moment [N m]; what they
+/// hold and lose is added. length: of its
 /// cell [m].                                                                                 theory.md (M.14)
 [[nodiscard]] Eigen::Vector2d strand_moment(const RodModel& model, int i, double length,
                                             const Eigen::Vector2d& rates, const numerics::DaePoint& at,

@@ -29,8 +29,8 @@ PairGradient VertexTurning::gradient(const Vector2d& weights) const {
   return g;
 }
 
-// d2(f kappa) = f d2kappa + kappa (f' d2c + f'' dc dc^T) + f' (dc dkappa^T + dkappa dc^T); the last with p = f' dc and
-// q = dkappa as 1/2 (p + q)(p + q)^T - 1/2 (q - p)(q - p)^T.
+// d2(f kappa) = f d2kappa + kappa (f' d2c + f'' dc dc^T) + f' (dc dkappa^T + dkappa dc^T); the last with p =
+// f' dc and q = dkappa as 1/2 (p + q)(p + q)^T - 1/2 (q - p)(q - p)^T.
 PairHessian VertexTurning::hessian(const Vector2d& weights) const {
   PairHessian h;
   const WeightedCurvature kappa = curvature(weights);

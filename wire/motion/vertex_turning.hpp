@@ -8,7 +8,8 @@
 
 namespace snare::wire {
 
-/// f = (phi/2)/tan(phi/2) of the angle by which the chords turn at a vertex, as a function of its cosine c: phi_j = f kappa_j.
+/// f = (phi/2)/tan(phi/2) of the angle by which the chords turn at a vertex, as a function of its cosine c:
+/// phi_j = f kappa_j.
 ///                                                                                           theory.md (W.31)
 template <class S>
 struct TurningShare {
@@ -17,7 +18,7 @@ struct TurningShare {
 template <class S>
 [[nodiscard]] TurningShare<S> turning_share(const TurnOf<S>& turn);
 
-/// By which angle the chords turn at a vertex, about the material directors.                  theory.md (W.31)
+/// By which angle the chords turn at a vertex, about the material directors.                 theory.md (W.31)
 ///   phi_j = f kappa_j,   f = (phi/2)/tan(phi/2) of the cosine c,   |kb| = 2 tan(phi/2)
 /// The cell stays the caller's and outlives this.
 class VertexTurning {
@@ -60,7 +61,8 @@ template <class S>
 
 }  // namespace turning
 
-// f = atan(r)/r of u = r^2 = tan^2(phi/2) = |kb|^2/4;   by c, u = (1 - c)/(1 + c):   u' = -2/chi^2,   u'' = 4/chi^3.
+// f = atan(r)/r of u = r^2 = tan^2(phi/2) = |kb|^2/4;   by c, u = (1 - c)/(1 + c):   u' = -2/chi^2,   u'' =
+// 4/chi^3.
 template <class S>
 [[gnu::always_inline]] inline TurningShare<S> turning_share(const TurnOf<S>& turn) {
   const S u = 0.25 * turn.binormal.squaredNorm();

@@ -29,7 +29,8 @@ struct EquilibriumReport : numerics::SolveReport {
   double pivot_ratio = 0.0;  ///< smallest over largest |pivot|: near 0 means a neutral direction
 };
 
-/// EA [N] and EI [N m^2] of a section none of whose sliders slides: what round-off and the first tangent have to do with.
+/// EA [N] and EI [N m^2] of a section none of whose sliders slides: what round-off and the first tangent have
+/// to do with.
 struct StickingStiffness {
   double axial = 0.0, bending = 0.0;
 };
@@ -56,9 +57,9 @@ inline double force_tolerance(double tolerance, double bending_stiffness, double
   return std::max(tolerance * scale, round_off);
 }
 
-/// Force that the last places of a coordinate of about `length` [m] make in the spring of a mount that gives [N]: what a residual of
-/// its row cannot fall below. The mount's place is then known to some 1e-16 of the length, as it is of a rigid one.
-/// stiffness [N/m]; infinite, or of a free end: 0.
+/// Force that the last places of a coordinate of about `length` [m] make in the spring of a mount that gives
+/// [N]: what a residual of its row cannot fall below. The mount's place is then known to some 1e-16 of the
+/// length, as it is of a rigid one. stiffness [N/m]; infinite, or of a free end: 0.
 inline double mount_round_off(double stiffness, double length) {
   return std::isinf(stiffness) ? 0.0 : 4.0 * std::numeric_limits<double>::epsilon() * length * stiffness;
 }
@@ -83,7 +84,8 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
   double shift = 0.0;
   double previous = std::numeric_limits<double>::max();
 
-  // Unknowns behind the coordinates of a vertex are angles: their residuals are moments, about a force times an edge.
+  // Unknowns behind the coordinates of a vertex are angles: their residuals are moments, about a force times
+  // an edge.
   const auto is_angle = [](Eigen::Index i) { return i % Rod::block >= Rod::dimension; };
   const std::array<double, 2> mounts{mount_round_off(rod.properties().left.translational_stiffness, length),
                                      mount_round_off(rod.properties().right.translational_stiffness, length)};
@@ -124,7 +126,8 @@ EquilibriumReport find_equilibrium(const Rod& rod, State& state, const Equilibri
     if (report.iterations == options.max_iterations) break;
 
     if (options.branch == Branch::stable) {
-      // Shift until positive definite; start from the last shift, so that a long descent does not search anew.
+      // Shift until positive definite; start from the last shift, so that a long descent does not search
+      // anew.
       double trial = (factored && factor.negative_pivots() == 0)
                          ? 0.0
                          : std::max(shift, 1e-3 * ei / std::pow(length, 3));

@@ -10,7 +10,8 @@ namespace snare::wire {
 /// to the span, it buckles into the asked mode.                                     theory.md (W.12)
 ///
 /// The start of the iteration is the inextensible shape of that mode with the asked shortening, its turning
-/// angle A f(S) with A from the closed form of the shortening; the shape returned is the rod's own equilibrium.
+/// angle A f(S) with A from the closed form of the shortening; the shape returned is the rod's own
+/// equilibrium.
 /// mode: 1 to 4. A wire shorter than the span, or with less slack than it needs to buckle, stays straight.
 struct LooseWire {
   PlanarState state;

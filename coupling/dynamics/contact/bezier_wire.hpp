@@ -9,7 +9,8 @@
 
 namespace snare::coupling {
 
-/// The C1 curve of a wire (M.6), element by element as cubics in Bernstein form: each stays in the convex hull of its
+/// The C1 curve of a wire (M.6), element by element as cubics in Bernstein form: each stays in the convex
+/// hull of its
 /// four control points, and so does every derivative by time in the hull of theirs.          theory.md (G.6)
 class BezierWire {
  public:
@@ -20,7 +21,8 @@ class BezierWire {
 
   /// How many elements the curve has.
   [[nodiscard]] int elements() const { return static_cast<int>(pieces_.size()); }
-  /// Control points of an element, from positions [m] or any derivative of them by time, in the layout of the unknowns.
+  /// Control points of an element, from positions [m] or any derivative of them by time, in the layout of the
+  /// unknowns.
   [[nodiscard]] Control control(int element, const numerics::VectorView& y) const;
   [[nodiscard]] double begin(int element) const { return piece(element).begin; }    ///< [m]
   [[nodiscard]] double length(int element) const { return piece(element).length; }  ///< [m]

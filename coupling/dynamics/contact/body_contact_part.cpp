@@ -75,8 +75,8 @@ struct Rubbed {
   double slider_speed = 0.0;              // [m/s]
 };
 
-// The law of (M.9) for the part of the bristle in the tangent plane. What stands upright decays as the slider does, and all of it forgets:
-// see BristleMeans. z in the axes of the shape.
+// The law of (M.9) for the part of the bristle in the tangent plane. What stands upright decays as the slider
+// does, and all of it forgets: see BristleMeans. z in the axes of the shape.
 template <class S>
 Rubbed<S> rub(const MotionFriction& friction, const Pressed<S>& a, const Vector3<S>& z,
               const Eigen::Matrix<S, 3, 3>& R_WS) {
@@ -306,7 +306,8 @@ Eigen::MatrixXd BodyContactPart::derivatives(const VectorView& y) const {
   return D;
 }
 
-// A ball round some points that the shape is farther from than from the ball's radius has none of them inside.
+// A ball round some points that the shape is farther from than from the ball's radius has none of them
+// inside.
 BodyContactPart::Inside BodyContactPart::points_inside(const Frames& now) const {
   Inside inside;
   tree_.visit([&](const PointTree::Ball& ball) {

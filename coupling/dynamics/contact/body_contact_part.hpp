@@ -16,11 +16,13 @@ namespace snare::coupling {
 template <class S>
 struct FrameMotion;
 
-/// Contact of two carriers in a DAE.                                                                    theory.md (M.28)
+/// Contact of two carriers in a DAE.                                                         theory.md (M.28)
 ///
-/// Friction with bristles adds three unknowns z a point, in the axes of the shape, of which the part in the tangent plane acts:
+/// Friction with bristles adds three unknowns z a point, in the axes of the shape, of which the part in the
+/// tangent plane acts:
 ///   e = z_t + tau w,   f = e min(mu_s p_e/z_m, mu p/|e|),   (p_e + W) z' = p_e dz/dt - W z/t_0
-/// with p_e dz/dt by bristle_flow; z forgets its part along the normal as the slider does, and all of it where nothing presses: see BristleMeans.
+/// with p_e dz/dt by bristle_flow; z forgets its part along the normal as the slider does, and all of it
+/// where nothing presses: see BristleMeans.
 class BodyContactPart final : public UnilateralForcePart {
  public:
   /// Frames of the shape and of the points.

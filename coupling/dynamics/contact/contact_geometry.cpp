@@ -80,7 +80,8 @@ ContactGeometry contact_geometry(const MotionContact& contact, const ContactShap
   return g;
 }
 
-// Against the turned body the wire's point moves by rho = dX - dp - phi x r; then dg = n.rho and dn = H rho + phi x n.
+// Against the turned body the wire's point moves by rho = dX - dp - phi x r; then dg = n.rho and dn = H rho +
+// phi x n.
 ContactChange contact_change(const MotionFriction& friction, const ContactGeometry& g,
                              const ContactDirection& d) {
   ContactChange c;
@@ -106,7 +107,8 @@ ContactChange contact_change(const MotionFriction& friction, const ContactGeomet
   c.load = g.load[1] * c.gap + g.load[2] * opening;
   c.force = c.load * g.normal + g.state.normal * c.normal;
   if (friction.acts()) {
-    // The axes turn with e and n: |u| da = du - a (a.du), du = de - d(n.e) n - (n.e) dn, db = dn x a + n x da.
+    // The axes turn with e and n: |u| da = du - a (a.du), du = de - d(n.e) n - (n.e) dn, db = dn x a + n x
+    // da.
     const Vector3d dtoward = g.by_wire ? dslope : Vector3d::Zero();
     const Vector3d du = dtoward - (c.normal.dot(g.toward) + g.normal.dot(dtoward)) * g.normal -
                         g.normal.dot(g.toward) * c.normal;

@@ -20,14 +20,17 @@ struct CurvePoint {
 };
 
 /// One point of contact between a wire and a body's shape at one state, in the axes of the world unless said.
-///                                                                                   theory.md (M.7)-(M.9)
+///                                                                                      theory.md (M.7)-(M.9)
 ///   g: gap, n: normal from the body to the wire, H: Hessian of the distance
-///   u = e - (n.e) n,  a = u/|u|,  b = n x a: axes of the tangent plane, e = X', or an axis of the world where X' is along n
+///   u = e - (n.e) n,  a = u/|u|,  b = n x a: axes of the tangent plane, e = X',
+///     or an axis of the world where X' is along n
 ///   w = v - v_B - omega x r,  r = X - p_WB: velocity of the wire against the body;  dg/dt = n.w
-///   lambda(g, o): load by the foundation [N/m], or normal force by a law [N]; o: dg/dt or dg/dt - (n.t)(t.w), t = X'/|X'|, or a mean of
+///   lambda(g, o): load by the foundation [N/m], or normal force by a law [N];
+///     o: dg/dt or dg/dt - (n.t)(t.w), t = X'/|X'|, or a mean of
 /// both, see Opening; lambda_e(g): the part of it that is stored
 ///   force on the wire, a length or in all: f = lambda n - (friction on the body, in a and b)
-/// At a mount o = dg/dt, and e is an axis of the world. Friction with bristles is that of the element's two vertices, weighted by their hats.
+/// At a mount o = dg/dt, and e is an axis of the world. Friction with bristles is that of the element's two
+/// vertices, weighted by their hats.
 struct ContactGeometry : CurvePoint {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
   Eigen::Vector3d arm = Eigen::Vector3d::Zero();                                      ///< r [m]
@@ -95,7 +98,8 @@ struct ContactChange {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< on the body about its centre of mass, in the body
 };
 
-/// How gap, load, friction, force and torque change along `d` at the place `g`: the first derivative of contact_geometry, linear in d.
+/// How gap, load, friction, force and torque change along `d` at the place `g`: the first derivative of
+/// contact_geometry, linear in d.
 [[nodiscard]] ContactChange contact_change(const MotionFriction& friction, const ContactGeometry& g,
                                            const ContactDirection& d);
 

@@ -36,7 +36,8 @@ class ContactGroup final : public Interaction {
   [[nodiscard]] Load load(const numerics::DaePoint& at) const override;
   /// The place on the wire nearest to any piece [m].
   [[nodiscard]] NearestPoint nearest(const numerics::VectorView& y) const;
-  /// Sums over what is closed; gap and place are those of the stretch that presses most, or of the nearest point. y in SI units.
+  /// Sums over what is closed; gap and place are those of the stretch that presses most, or of the nearest
+  /// point. y in SI units.
   [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const override;
   [[nodiscard]] std::optional<int> held_states() const override { return touches_.held_states(); }
   void take_from_mounts(const numerics::VectorView& y,

@@ -8,8 +8,9 @@
 
 namespace snare::coupling {
 
-// How a load is integrated along a closed stretch of a wire: the same for contact with bodies and with other wires.
-//                                                                                        theory.md (M.8), (M.9)
+// How a load is integrated along a closed stretch of a wire: the same for contact with bodies and with other
+// wires.
+//                                                                                      theory.md (M.8), (M.9)
 
 /// Gauss's rule on a closed stretch: exact for a parabola of load under the cubics of the curve.
 inline constexpr std::array<double, 3> gauss_places{0.5 - 0.3872983346207417, 0.5, 0.5 + 0.3872983346207417};
@@ -17,8 +18,9 @@ inline constexpr std::array<double, 3> gauss_weights{5.0 / 18.0, 8.0 / 18.0, 5.0
 
 /// Where the load of a stretch is taken: use(u, weight), weights as shares of the element's length [-].
 ///
-/// Where a crest is about to part a stretch, that is integrated as the two that it will be; where the crest has just risen from one lobe, as one. In
-/// between, with x = 1 - (gap of the crest)/(that of the shallower lobe), the two have the share x^2 (3 - 2 x): so no load jumps where a stretch
+/// Where a crest is about to part a stretch, that is integrated as the two that it will be; where the crest
+/// has just risen from one lobe, as one. In between, with x = 1 - (gap of the crest)/(that of the shallower
+/// lobe), the two have the share x^2 (3 - 2 x): so no load jumps where a stretch
 /// parts or closes.                                                                     theory.md (M.8)
 template <class Use>
 void for_each_place(const ContactInterval& stretch, const Use& use) {

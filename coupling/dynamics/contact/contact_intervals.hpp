@@ -6,8 +6,8 @@
 
 namespace snare::coupling {
 
-/// A place on an element: u from 0 to 1, the gap there [m], its derivative by the material coordinate [-], and by how much the
-/// surface itself bends it down, max(0, -X'.H X') [1/m].
+/// A place on an element: u from 0 to 1, the gap there [m], its derivative by the material coordinate [-],
+/// and by how much the surface itself bends it down, max(0, -X'.H X') [1/m].
 struct GapPlace {
   double u = 0.0;
   double gap = 0.0;
@@ -32,12 +32,13 @@ struct ContactInterval {
 
 /// Where the gap along an element is negative.                                                theory.md (G.7)
 ///
-/// Between two places the gap cannot fall by more than the way there and back, so that far parts are left out; what is left is
-/// halved until its second derivative bounds it to one sign. gap: u -> GapPlace, once differentiable.
+/// Between two places the gap cannot fall by more than the way there and back, so that far parts are left
+/// out; what is left is halved until its second derivative bounds it to one sign. gap: u -> GapPlace, once
+/// differentiable.
 class ContactIntervals {
  public:
-  /// length: of the element [m]; way: a bound of the length of its curve [m]; bend: of |X''| [1/m]; resolution: on a shorter way
-  /// zeros and minima are looked for [m].
+  /// length: of the element [m]; way: a bound of the length of its curve [m]; bend: of |X''| [1/m];
+  /// resolution: on a shorter way zeros and minima are looked for [m].
   ContactIntervals(double length, double way, double bend, double resolution)
       : length_(length), way_(way), bend_(bend), resolution_(resolution) {}
 
@@ -49,7 +50,8 @@ class ContactIntervals {
   }
 
  private:
-  // Shares of the resolution: dips that are no deeper are left out, pieces that are no longer are not halved, nor looked into for crests.
+  // Shares of the resolution: dips that are no deeper are left out, pieces that are no longer are not halved,
+  // nor looked into for crests.
   static constexpr double least_dip = 1e-10, least_way = 1e-6, least_wave = 1.0 / 16.0;
 
   struct ContactCache {
@@ -92,8 +94,8 @@ class ContactIntervals {
     return bend_ + 2.0 * std::max(a.curvature_bound, b.curvature_bound);
   }
 
-  /// No gap between two places is below this [m]: of g_a + g_a' s - B s^2/2 and the same from b the larger one holds, and its least
-  /// is at an end or where the two meet.
+  /// No gap between two places is below this [m]: of g_a + g_a' s - B s^2/2 and the same from b the larger
+  /// one holds, and its least is at an end or where the two meet.
   [[nodiscard]] double lowest(const GapPlace& a, const GapPlace& b) const {
     const double w = length_ * (b.u - a.u), bend = fall(a, b);
     const double least = std::min(a.gap, b.gap);
@@ -111,8 +113,8 @@ class ContactIntervals {
     return a.gap + (b.gap - a.gap) * s / w + 0.5 * bend * s * (w - s) <= 0.0;
   }
 
-  /// Whether a crest and a hollow may lie between two places where the gap goes the same way: the cubic with these ends does not go that way
-  /// throughout.
+  /// Whether a crest and a hollow may lie between two places where the gap goes the same way: the cubic with
+  /// these ends does not go that way throughout.
   [[nodiscard]] bool waves(const GapPlace& a, const GapPlace& b) const {
     if (!(a.slope * b.slope > 0.0) || way_ * (b.u - a.u) <= least_wave * resolution_) return false;
     const double chord = (b.gap - a.gap) / (length_ * (b.u - a.u));
@@ -146,8 +148,8 @@ class ContactIntervals {
     s.behind = std::min(s.behind, deepest.gap);
   }
 
-  /// The minimum between a falling and a rising gap, or the maximum between a rising and a falling one: the zero of the slope (Illinois). Its
-  /// place need not be sharp, since the gap is level there.
+  /// The minimum between a falling and a rising gap, or the maximum between a rising and a falling one: the
+  /// zero of the slope (Illinois). Its place need not be sharp, since the gap is level there.
   template <class Gap>
   GapPlace turn(const Gap& gap, GapPlace low, GapPlace high) const {
     constexpr double level = 1e-9;
@@ -171,8 +173,8 @@ class ContactIntervals {
     return best;
   }
 
-  /// Between a place inside and one outside: the zero of the gap. First guess by the parabola through both, then Newton's method
-  /// held between the last places on either side.
+  /// Between a place inside and one outside: the zero of the gap. First guess by the parabola through both,
+  /// then Newton's method held between the last places on either side.
   template <class Gap>
   double zero(const Gap& gap, const GapPlace& inside, const GapPlace& outside) const {
     double in = inside.u, out = outside.u;

@@ -20,7 +20,8 @@ using numerics::VectorView;
 
 namespace {
 
-// A law's minimum of the gap that is flatter than this along the wire [1/m] is taken to stand still. theory.md (G.9)
+// A law's minimum of the gap that is flatter than this along the wire [1/m] is taken to stand still.
+//                                                                                             theory.md (G.9)
 constexpr double least_curvature = 1.0;
 
 // Beside what may be touched next, so that the pattern seldom changes.
@@ -40,7 +41,8 @@ ContactPart::ContactPart(const MotionContact& contact, std::shared_ptr<const Con
   const double diameter = 2.0 * contact_.wire_radius;
   if (contact_.foundation.modulus == 0.0)
     contact_.foundation.modulus = default_modulus(p.axial_stiffness, p.bending_stiffness, diameter);
-  // A mount: EA over the length that gives way; friction by the smooth law with the one coefficient of sliding.
+  // A mount: EA over the length that gives way; friction by the smooth law with the one coefficient of
+  // sliding.
   mount_length_ =
       mount_length(p.axial_stiffness, p.bending_stiffness, diameter, search_.shape().smallest_radius());
   mount_weight_ = p.axial_stiffness / (mount_length_ * contact_.foundation.modulus);
@@ -341,7 +343,8 @@ void ContactPart::jacobian(const DaePoint& at, double c, std::vector<double>& va
   }
 }
 
-// One direction after another: what changes along it in all rows, and from there to the unknowns that it belongs to.
+// One direction after another: what changes along it in all rows, and from there to the unknowns that it
+// belongs to.
 void ContactPart::add_node_derivatives(const QuadraturePoint& n, const ContactGeometry& g,
                                        const BristleMeans& means, const VectorView& y) {
   const MotionFriction& friction = n.place == ContactPlace::mount ? at_mount_.friction : contact_.friction;
@@ -404,7 +407,8 @@ void ContactPart::add_node_derivatives(const QuadraturePoint& n, const ContactGe
   }
 }
 
-// The ends of a stretch follow the zeros of the gap: d int G z/2 dS = (int of the derivative) - (G z/2) dg/|dg/dS| at each end.
+// The ends of a stretch follow the zeros of the gap: d int G z/2 dS = (int of the derivative) - (G z/2)
+// dg/|dg/dS| at each end.
 void ContactPart::add_end_derivatives(int element, double u, const BristleMeans& means, const VectorView& y) {
   const QuadraturePoint n = node(
       element, u, foundation_share(search_.curve().begin(element) + u * search_.curve().length(element)));
@@ -470,7 +474,8 @@ ContactPart::Sums ContactPart::sums(const VectorView& y) const {
     s.force += force;
     s.normal += n.weight * g.state.normal;
     s.moment += g.x.cross(force);
-    // What the pair of forces takes from wire and body together, less what foundation or law and bristles store.
+    // What the pair of forces takes from wire and body together, less what foundation or law and bristles
+    // store.
     const double damped = (g.elastic[0] - g.state.normal) * g.gap_rate;
     double rubbed = g.friction.force.dot(g.state.sliding);
     if (has_bristle() && n.place == ContactPlace::wire) {

@@ -17,13 +17,14 @@
 
 namespace snare::coupling {
 
-/// Contact between a wire and one convex piece of a body's shape.                          theory.md (M.7)-(M.9)
+/// Contact between a wire and one convex piece of a body's shape.                       theory.md (M.7)-(M.9)
 ///
 ///   f(S) = lambda n - friction, a length of the wire, where the gap is negative;  nodal forces  int N_k f dS
-/// by Gauss's rule on every stretch that is closed, so that the force is continuous whatever touches, slides on, wraps or
-/// lets go. With a law of fast simulators the force of each local minimum of the gap acts there instead.
-/// Friction with bristles adds their deflection z_i at every vertex, in the axes along the wire and across it. Each carries friction in
-/// the share of its hat H_i and moves by a mean over the load: see BristleMeans.
+/// by Gauss's rule on every stretch that is closed, so that the force is continuous whatever touches, slides
+/// on, wraps or lets go. With a law of fast simulators the force of each local minimum of the gap acts there
+/// instead. Friction with bristles adds their deflection z_i at every vertex, in the axes along the wire and
+/// across it. Each carries friction in the share of its hat H_i and moves by a mean over the load: see
+/// BristleMeans.
 class ContactPart final : public numerics::DaePart {
  public:
   ContactPart(const MotionContact& contact, std::shared_ptr<const ContactShape> piece,
@@ -34,8 +35,8 @@ class ContactPart final : public numerics::DaePart {
   void attach_pattern(const numerics::SparseMatrix& pattern) override;
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
-  /// Where an element touches that is not in the pattern: those that touch come in, with some neighbours, and those that are no
-  /// longer near go out.
+  /// Where an element touches that is not in the pattern: those that touch come in, with some neighbours, and
+  /// those that are no longer near go out.
   bool outgrows_pattern(const numerics::DaePoint& at) override;
   /// The elements that may be touched next.
   void accept(const numerics::DaePoint& at) override;
@@ -57,8 +58,9 @@ class ContactPart final : public numerics::DaePart {
   /// First of the two of a vertex; only with bristles.
   [[nodiscard]] int bristle_of(int vertex) const { return bristle_ + 2 * vertex; }
 
-  /// Works out derivatives from here on only within a plane across axis `normal` of the world (0 to 2), in which wire and body stay. Returns the
-  /// unknowns that leave it, the bristles' deflections across the wire: see RodPart.
+  /// Works out derivatives from here on only within a plane across axis `normal` of the world (0 to 2), in
+  /// which wire and body stay. Returns the unknowns that leave it, the bristles' deflections across the wire:
+  /// see RodPart.
   [[nodiscard]] std::vector<int> restrict_to_plane(int normal);
   /// What happens in space is worked out again.
   void leave_plane() { normal_.reset(); }
@@ -122,8 +124,9 @@ class ContactPart final : public numerics::DaePart {
   /// Whether anything moves along an axis of the world, or turns about it.
   [[nodiscard]] bool moves_along(int axis) const { return normal_ != axis; }
   [[nodiscard]] bool turns_about(int axis) const { return normal_.value_or(axis) == axis; }
-  // Rows and columns of what an element's nodes are in the Jacobian: balances of its four vertices, of the body, rows of its two
-  // bristles; by places and velocities of the vertices, by those of the body, by the bristles.
+  // Rows and columns of what an element's nodes are in the Jacobian: balances of its four vertices, of the
+  // body, rows of its two bristles; by places and velocities of the vertices, by those of the body, by the
+  // bristles.
   static constexpr int body_rows = 12, bristle_rows = 18;
   static constexpr int velocity_columns = 12, body_columns = 24,
                        body_rate_columns = body_columns + BodyPart::coordinates,

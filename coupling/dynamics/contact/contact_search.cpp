@@ -24,9 +24,9 @@ ContactSearch::ContactSearch(const MotionContact& contact, std::shared_ptr<const
       rod_(rod),
       body_(body),
       curve_(rod) {
-  // The gap's curvature along a straight wire that touches is at most one over the sum of the radii; a quarter of that length
-  // shows every minimum. A wire that bends round a large shape shows two within an element: a quarter of that. An element is
-  // not cut into more than 64.
+  // The gap's curvature along a straight wire that touches is at most one over the sum of the radii; a
+  // quarter of that length shows every minimum. A wire that bends round a large shape shows two within an
+  // element: a quarter of that. An element is not cut into more than 64.
   constexpr double share = 0.25, most_pieces = 64.0;
   const double radius = wire_radius_ + shape_->smallest_radius();
   resolution_ = std::max(share * std::min(radius, std::max(wire_radius_, curve_.shortest())),
@@ -45,14 +45,15 @@ BezierWire::Control ContactSearch::control(const Pose& X_WS, int element, const 
   return X_WS.R.transpose() * (curve_.control(element, y).colwise() - X_WS.p);
 }
 
-// The distance changes by no more than the way: nothing within a ball is nearer than its centre less its radius.
+// The distance changes by no more than the way: nothing within a ball is nearer than its centre less its
+// radius.
 double ContactSearch::lower_bound(const BezierWire::Control& control) const {
   const AlignedBox3d box(control.rowwise().minCoeff(), control.rowwise().maxCoeff());
   return shape_->distance(box.center()) - 0.5 * box.diagonal().norm() - wire_radius_;
 }
 
-// An element whose gap was g when the way was w meets nothing before the way is w + g. Its distance is looked up where half of that is gone: what goes
-// away may take longer steps.
+// An element whose gap was g when the way was w meets nothing before the way is w + g. Its distance is looked
+// up where half of that is gone: what goes away may take longer steps.
 void ContactSearch::update(const VectorView& y) {
   const Pose where = X_WS(y);
   const Vector3d spin = where.R.transpose() * (multibody::rotation(y.segment<4>(body_.quaternion())) *
@@ -91,8 +92,8 @@ void ContactSearch::update(const VectorView& y) {
   longest_step_ = 1.0 / (speed * std::max(speeds_.maxCoeff() / clear, fastest / thickness_));
 }
 
-// The boxes in the order of their bounds, until none can hold anything nearer; in each the gap at places that no minimum
-// passes.
+// The boxes in the order of their bounds, until none can hold anything nearer; in each the gap at places that
+// no minimum passes.
 NearestPoint ContactSearch::nearest(const VectorView& y) const {
   const Pose where = X_WS(y);
   std::vector<std::pair<double, int>> order;

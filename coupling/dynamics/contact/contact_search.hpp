@@ -19,7 +19,7 @@ struct NearestPoint {
 };
 
 /// Which elements of a wire come near a shape, and how long a step may be that nothing else does.
-///                                                                                  theory.md (G.6), (G.8)
+///                                                                                     theory.md (G.6), (G.8)
 class ContactSearch {
  public:
   ContactSearch(const MotionContact& contact, std::shared_ptr<const ContactShape> shape,
@@ -38,8 +38,8 @@ class ContactSearch {
   void update(const numerics::VectorView& y);
   /// Elements that may be touched before the next accepted state, in their order.
   [[nodiscard]] const std::vector<int>& candidates() const { return candidates_; }
-  /// A step in which no other element can be touched, and none passed by, at twice the speeds of the state [s]; infinite at
-  /// rest.
+  /// A step in which no other element can be touched, and none passed by, at twice the speeds of the state
+  /// [s]; infinite at rest.
   [[nodiscard]] double longest_step() const { return longest_step_; }
 
   /// Of the shape's frame in the world at unknowns y (SI units).

@@ -10,7 +10,8 @@
 
 namespace snare::coupling {
 
-/// Takes the sample of a stretch or of a piece into that of all: sums of forces; gap and place of what presses most.
+/// Takes the sample of a stretch or of a piece into that of all: sums of forces; gap and place of what
+/// presses most.
 void take_in(const ContactSample& one, ContactSample& sum);
 
 /// The same sample with a force and a normal force [N] from elsewhere, shared by its points as theirs were.
@@ -30,7 +31,8 @@ class ContactTouches {
   /// reach: stretches that have moved by no more are the same [m]. sticks: whether stick and slip are told.
   ContactTouches(double reach, bool sticks) : reach_(reach), sticks_(sticks) {}
 
-  /// What has happened since the last state told: `contact` of the events is left at 0. The sample is that of `now`.
+  /// What has happened since the last state told: `contact` of the events is left at 0. The sample is that of
+  /// `now`.
   [[nodiscard]] std::vector<MotionEvent> observe(const ContactSample& sample, const Seen& now,
                                                  const Seen& before, const GapAt& gap_at);
   /// How many of the states told last have touched without a break.

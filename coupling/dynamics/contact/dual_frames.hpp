@@ -13,7 +13,8 @@
 
 namespace snare::coupling {
 
-/// Laws between frames in numbers that carry their derivatives along, so that a law is written once: Ceres' Jet.
+/// Laws between frames in numbers that carry their derivatives along, so that a law is written once: Ceres'
+/// Jet.
 template <int N>
 using Dual = ceres::Jet<double, N>;
 template <class S>
@@ -57,8 +58,9 @@ template <std::size_t K>
   return now;
 }
 
-/// Variables of a law between K frames: what it needs to know of how they move. It sees places and velocities relative to each other only, so
-/// that the last frame's shift and velocity follow from all others'; of the first K - Turning it does not see how they turn.
+/// Variables of a law between K frames: what it needs to know of how they move. It sees places and velocities
+/// relative to each other only, so that the last frame's shift and velocity follow from all others'; of the
+/// first K - Turning it does not see how they turn.
 template <std::size_t K, std::size_t Turning = K>
 struct FrameVariables {
   enum Kind : int { turn, shift, spin, velocity };  ///< [rad], [m], [rad/s], [m/s]; three of each
@@ -199,7 +201,8 @@ struct BristleInputs {
   }
 };
 
-/// A vector that depends on them, in SI units, by its value and by `change`, which returns its change by those of the inputs.
+/// A vector that depends on them, in SI units, by its value and by `change`, which returns its change by
+/// those of the inputs.
 template <class Change>
 [[nodiscard]] Eigen::Vector3d lifted(const Eigen::Vector3d& value, const BristleInputs<double>& /*in*/,
                                      const Change& /*change*/) {
@@ -221,7 +224,8 @@ template <int N, class Change>
   return f;
 }
 
-/// Smooth friction [N] of what slides with w [m/s] across a unit normal under a normal force [N]: against w.  theory.md (M.9)
+/// Smooth friction [N] of what slides with w [m/s] across a unit normal under a normal force [N]: against w.
+///                                                                                            theory.md (M.9)
 template <class S>
 [[nodiscard]] Vector3<S> smooth_friction(const MotionFriction& friction, const Vector3<S>& w,
                                          const S& normal) {

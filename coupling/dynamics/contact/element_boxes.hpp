@@ -9,8 +9,9 @@
 
 namespace snare::coupling {
 
-/// Boxes around the elements of a wire, by twos in boxes around more of them: a binary tree, refitted where the wire moves.
-///                                                                                                    theory.md (G.6)
+/// Boxes around the elements of a wire, by twos in boxes around more of them: a binary tree, refitted where
+/// the wire moves.
+///                                                                                            theory.md (G.6)
 class ElementBoxes {
  public:
   ElementBoxes() = default;

@@ -56,7 +56,8 @@ bool parted(const CubicPieces& own, int element, const CubicPieces& other, int f
 
 namespace {
 
-/// Zero of (X - p).X' between a negative value at 0 and a positive one at 1: Newton's method, halving where it leaves the interval.
+/// Zero of (X - p).X' between a negative value at 0 and a positive one at 1: Newton's method, halving where
+/// it leaves the interval.
 double foot_within(const CubicPieces& pieces, int element, const Vector3d& p, double at_0, double at_1) {
   constexpr double sharp = 1e-14;
   double low = 0.0, high = 1.0;

@@ -39,8 +39,9 @@ class CubicPieces {
   std::vector<Eigen::Matrix<double, 3, 4>> pieces_;
   std::vector<BezierWire::Control> controls_;
 };
-/// Whether an element of one wire and a run of elements of another are further apart than a distance [m], as a plane between them shows
-/// whose normal is perpendicular to both; false says nothing.                                 theory.md (G.13)
+/// Whether an element of one wire and a run of elements of another are further apart than a distance [m], as
+/// a plane between them shows
+/// whose normal is perpendicular to both; false says nothing.                                theory.md (G.13)
 [[nodiscard]] bool parted(const CubicPieces& own, int element, const CubicPieces& other, int first, int last,
                           double distance);
 
@@ -51,7 +52,9 @@ struct FootPoint {
   bool stands =
       false;  ///< an end of the wire or of the elements that were looked through: (X - p).X' is not zero
 };
-/// The local minimum of the distance to p [m] that is downhill of the nearest of the vertices of elements first ... last.   theory.md (G.12)
+/// The local minimum of the distance to p [m] that is downhill of the nearest of the vertices of elements
+/// first ... last.
+///                                                                                           theory.md (G.12)
 [[nodiscard]] FootPoint foot_point(const CubicPieces& pieces, int first, int last, const Eigen::Vector3d& p);
 
 }  // namespace snare::coupling

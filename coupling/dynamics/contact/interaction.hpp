@@ -16,9 +16,10 @@
 
 namespace snare::coupling {
 
-/// Where the integrals along a run stand: powers [W], sums of all outer forces [N] and moments about the origin [N m] on
-/// wires and free bodies, the force of every interaction on the wire or the first of two [N], and behind them the normal
-/// force of each. What laws lose has kinks, which the integrator's formula does not see: that sum is LossSum's.
+/// Where the integrals along a run stand: powers [W], sums of all outer forces [N] and moments about the
+/// origin [N m] on wires and free bodies, the force of every interaction on the wire or the first of two [N],
+/// and behind them the normal force of each. What laws lose has kinks, which the integrator's formula does
+/// not see: that sum is LossSum's.
 namespace integral {
 constexpr Eigen::Index dissipated = 0;
 constexpr Eigen::Index work = 1;
@@ -38,8 +39,8 @@ struct IntegralRates {
   ConstraintSet::Outer& held;  ///< what acts on carriers
 };
 
-/// What presses between parts of a motion: an entry of the contacts in results. A run holds one list of them, in the order
-/// of `Motion::contact_names`. Unknowns y of the run are in SI units.
+/// What presses between parts of a motion: an entry of the contacts in results. A run holds one list of them,
+/// in the order of `Motion::contact_names`. Unknowns y of the run are in SI units.
 class Interaction {
  public:
   Interaction() = default;
@@ -115,8 +116,8 @@ class Interaction {
   virtual void restore_touches(std::span<const double>& /*memory*/) {}
 };
 
-/// What contact presses on rigidly held components of a wire's ends, which is no part of the rod's own reaction: taken from
-/// the outer forces and moments. on_ends: of the first and the last vertex [N].
+/// What contact presses on rigidly held components of a wire's ends, which is no part of the rod's own
+/// reaction: taken from the outer forces and moments. on_ends: of the first and the last vertex [N].
 inline void take_held(const wire::RodPart& rod, const std::array<Eigen::Vector3d, 2>& on_ends,
                       const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates) {
   const std::array<int, 2> ends{rod.position_of(0), rod.position_of(rod.vertices() - 1)};

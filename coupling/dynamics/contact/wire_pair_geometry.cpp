@@ -114,7 +114,8 @@ PairChange pair_change(const MotionFriction& friction, const PairGeometry& g, co
     }
   }
   const Vector3d dsliding = drelative - dturn.cross(g.apart) - g.turn.cross(dapart);
-  // The axes turn with X_A' and n: |u| da = du - a (a.du), du = dX' - d(n.X') n - (n.X') dn, db = dn x a + n x da.
+  // The axes turn with X_A' and n: |u| da = du - a (a.du), du = dX' - d(n.X') n - (n.X') dn, db = dn x a + n
+  // x da.
   const Vector3d& dslope = d.sides[0].slope;
   const Vector3d du =
       dslope - (dnormal.dot(a.slope) + g.normal.dot(dslope)) * g.normal - g.normal.dot(a.slope) * dnormal;

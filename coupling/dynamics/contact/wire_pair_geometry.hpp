@@ -9,7 +9,8 @@
 
 namespace snare::coupling {
 
-/// One of two wires at a place of its curve, and how it moves there. Derivatives by its material coordinate zeta.
+/// One of two wires at a place of its curve, and how it moves there. Derivatives by its material coordinate
+/// zeta.
 struct PairSide {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();        ///< X [m]
   Eigen::Vector3d slope = Eigen::Vector3d::Zero();    ///< X' [-]
@@ -28,15 +29,18 @@ struct PairSide {
   [[nodiscard]] Eigen::Vector3d turn() const;  ///< of the section [rad/s]
 };
 
-/// Wire A at a place and the point of wire B that is nearest to it, axes of the world.          theory.md (M.20), (M.21)
+/// Wire A at a place and the point of wire B that is nearest to it, axes of the world.
+///                                                                                   theory.md (M.20), (M.21)
 ///
 ///   r = X_A - X_B,  D = |r|,  n = r/D,  g = D - r_A - r_B;   r.X_B' = 0 (B's point follows)
-///   t = X_A'/|X_A'|,  o: dg/dt or dg/dt - (n.t) (t.(v_A - v_B)), the rate by motion across A, or a mean of both: see Opening
+///   t = X_A'/|X_A'|,  o: dg/dt or dg/dt - (n.t) (t.(v_A - v_B)), the rate by motion across A,
+///     or a mean of both: see Opening
 ///   u = X_A' - (n.X_A') n,  a = u/|u|,  b = n x a
 ///   w = v_A - v_B - Omega x r,   Omega = s_A omega_A + s_B omega_B,   s_A = r_A/(r_A + r_B)
-///   force on A, a length of A: f = p n - (friction on B, in a and b), on B -f; at one point on r, which shares it as the radii
-/// do: so the section of A bears the moment s_A M, that of B s_B M, M = r x (friction on B). Its part about the wire's own axis is
-/// taken as held: wires neither roll on each other nor are twisted by each other.
+///   force on A, a length of A: f = p n - (friction on B, in a and b), on B -f;
+///     at one point on r, which shares it as the radii
+/// do: so the section of A bears the moment s_A M, that of B s_B M, M = r x (friction on B). Its part about
+/// the wire's own axis is taken as held: wires neither roll on each other nor are twisted by each other.
 struct PairGeometry {
   std::array<PairSide, 2> sides;                        ///< A, B
   std::array<double, 2> shares{0.5, 0.5};               ///< s_A, s_B
@@ -99,12 +103,13 @@ struct PairChange {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< of f
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< of M
 };
-/// How load, force and moment change along `d` at the place `g`, B's point following: the first derivative of pair_geometry, linear in d.
+/// How load, force and moment change along `d` at the place `g`, B's point following: the first derivative of
+/// pair_geometry, linear in d.
 [[nodiscard]] PairChange pair_change(const MotionFriction& friction, const PairGeometry& g,
                                      const PairDirection& d);
 
-/// What a moment m [N m] on an edge e [m] is as forces [N] on its vertices, but for its part about the edge: (m x e)/|e|^2 on the second,
-/// the opposite on the first.
+/// What a moment m [N m] on an edge e [m] is as forces [N] on its vertices, but for its part about the edge:
+/// (m x e)/|e|^2 on the second, the opposite on the first.
 [[nodiscard]] Eigen::Vector3d couple_on(const Eigen::Vector3d& edge, const Eigen::Vector3d& moment);
 /// Its change with that of the edge and of the moment [N].
 [[nodiscard]] Eigen::Vector3d couple_change(const Eigen::Vector3d& edge, const Eigen::Vector3d& moment,

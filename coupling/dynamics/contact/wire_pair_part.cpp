@@ -406,7 +406,8 @@ void WirePairPart::add_column(const QuadraturePoint& n, const PairGeometry& g, c
   }
 }
 
-// One unknown after another: the direction along which it moves what the node depends on, and what changes in all rows.
+// One unknown after another: the direction along which it moves what the node depends on, and what changes in
+// all rows.
 void WirePairPart::add_node_jacobian(const QuadraturePoint& n, const PairGeometry& g, const VectorView& y,
                                      LocalBlock& block) const {
   for (std::size_t s = 0; s < 2; ++s) {

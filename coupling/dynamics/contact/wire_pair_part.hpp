@@ -16,14 +16,14 @@
 
 namespace snare::coupling {
 
-/// Contact of two wires with each other.                                                     theory.md (M.20), (M.21)
+/// Contact of two wires with each other.                                             theory.md (M.20), (M.21)
 ///
-/// Half of the foundation's load is integrated along the first wire against the nearest points of the second, half along the
-/// second against those of the first:
+/// Half of the foundation's load is integrated along the first wire against the nearest points of the second,
+/// half along the second against those of the first:
 ///   E = 1/2 int e(g(S_1)) dS_1 + 1/2 int e(g(S_2)) dS_2,   e(g) = k g^2/2
-/// by Gauss's rule on every closed stretch of an element. Wires that cross meet Hertz's form of law, wires that lie along each
-/// other k d a length, and between these nothing is told apart. Friction with bristles adds deflections at the vertices of
-/// both wires: see ContactPart.
+/// by Gauss's rule on every closed stretch of an element. Wires that cross meet Hertz's form of law, wires
+/// that lie along each other k d a length, and between these nothing is told apart. Friction with bristles
+/// adds deflections at the vertices of both wires: see ContactPart.
 class WirePairPart final : public numerics::DaePart, public Interaction {
  public:
   WirePairPart(const WirePair& pair, const wire::RodPart& first, const wire::RodPart& second);
@@ -79,8 +79,8 @@ class WirePairPart final : public numerics::DaePart, public Interaction {
   void add_rates(const numerics::DaePoint& at, const IntegralRates& rates) const override;
   [[nodiscard]] Load load(const numerics::DaePoint& at) const override;
 
-  /// Sums over what is closed; gap and place, on the first wire, are those of the stretch that presses most, or of the nearest
-  /// points. Its points: the closed stretches along the first wire. y in SI units.
+  /// Sums over what is closed; gap and place, on the first wire, are those of the stretch that presses most,
+  /// or of the nearest points. Its points: the closed stretches along the first wire. y in SI units.
   [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const override;
   [[nodiscard]] std::optional<int> held_states() const override { return touches_.held_states(); }
   void take_from_mounts(const numerics::VectorView& y,
@@ -130,7 +130,8 @@ class WirePairPart final : public numerics::DaePart, public Interaction {
     std::array<Eigen::Vector3d, 4> force;
     Eigen::Vector3d held_moment = Eigen::Vector3d::Zero();
   };
-  /// Rows: of either place 12 of forces, 4 of bristles. Columns: of either place 12 of places and 12 of velocities, 4 of bristles.
+  /// Rows: of either place 12 of forces, 4 of bristles. Columns: of either place 12 of places and 12 of
+  /// velocities, 4 of bristles.
   using LocalBlock = Eigen::Matrix<double, 28, 52>;
 
   const ContactCache& found_at(const numerics::VectorView& y) const;
@@ -160,7 +161,8 @@ class WirePairPart final : public numerics::DaePart, public Interaction {
                   const numerics::VectorView& y, Eigen::Ref<Eigen::Matrix<double, 28, 1>> column) const;
   void add_node_jacobian(const QuadraturePoint& node, const PairGeometry& g, const numerics::VectorView& y,
                          LocalBlock& block) const;
-  /// What the bristles feel of the end of a closed stretch, where p_e vanishes but not its rate: see ContactPart.
+  /// What the bristles feel of the end of a closed stretch, where p_e vanishes but not its rate: see
+  /// ContactPart.
   void add_end_jacobian(const QuadraturePoint& end, const numerics::VectorView& y, LocalBlock& block) const;
   void add_block(const QuadraturePoint& node, const LocalBlock& block,
                  const numerics::PatternValues& into) const;

@@ -26,7 +26,8 @@ constexpr double far = 4.0;
 
 WirePairSearch::WirePairSearch(const WirePair& pair, const wire::RodPart& a, const wire::RodPart& b)
     : thickness_(pair.radii[0] + pair.radii[1]), rods_{&a, &b}, curves_{BezierWire(a), BezierWire(b)} {
-  // The gap's curvature along a straight wire that touches is at most one over the sum of the radii: see ContactSearch.
+  // The gap's curvature along a straight wire that touches is at most one over the sum of the radii: see
+  // ContactSearch.
   constexpr double share = 0.25, most_pieces = 64.0;
   margin_ = thickness_;
   for (std::size_t w = 0; w < 2; ++w) {
@@ -43,8 +44,8 @@ void WirePairSearch::place(std::array<ElementBoxes, 2>& boxes, const VectorView&
   for (std::size_t w = 0; w < 2; ++w) boxes[w].place(curves_[w], y);
 }
 
-// What two wires have gone against each other is at most what each has gone against a rigid body: the one that moves most as both
-// together do.
+// What two wires have gone against each other is at most what each has gone against a rigid body: the one
+// that moves most as both together do.
 void WirePairSearch::update(const VectorView& y) {
   const bool first = last_[0].cols() == 0;
   Vector3d centre = Vector3d::Zero(), way = Vector3d::Zero(), velocity = Vector3d::Zero();
@@ -63,7 +64,8 @@ void WirePairSearch::update(const VectorView& y) {
     velocity += v / count;
   });
   const Vector3d before = centre - way;
-  // Turn and spin of least squares about the centre, by the second moments there; round-off decides about an axis without any.
+  // Turn and spin of least squares about the centre, by the second moments there; round-off decides about an
+  // axis without any.
   Matrix3d moments = Matrix3d::Zero();
   Vector3d turn = Vector3d::Zero(), spin = Vector3d::Zero();
   each([&](std::size_t w, int i, const Vector3d& x, const Vector3d& v) {

@@ -26,7 +26,7 @@ struct NearElements {
 };
 
 /// Which elements of two wires come near each other, and how long a step may be that no others do.
-///                                                                                  theory.md (G.6), (G.13)
+///                                                                                    theory.md (G.6), (G.13)
 class WirePairSearch {
  public:
   WirePairSearch(const WirePair& pair, const wire::RodPart& a, const wire::RodPart& b);
@@ -40,12 +40,13 @@ class WirePairSearch {
 
   /// Told the unknowns y (SI units) of an accepted state.
   void update(const numerics::VectorView& y);
-  /// Elements that may touch before the next accepted state, (of the first wire, of the second), in their order.
+  /// Elements that may touch before the next accepted state, (of the first wire, of the second), in their
+  /// order.
   [[nodiscard]] const std::vector<std::pair<int, int>>& candidates() const { return candidates_; }
   /// The same by the elements of either wire.
   [[nodiscard]] const std::vector<NearElements>& near(std::size_t wire) const { return near_[wire]; }
-  /// A step in which no other elements can touch, and none pass each other, at twice the speeds of the state [s]; infinite at
-  /// rest.
+  /// A step in which no other elements can touch, and none pass each other, at twice the speeds of the state
+  /// [s]; infinite at rest.
   [[nodiscard]] double longest_step() const { return longest_step_; }
 
  private:

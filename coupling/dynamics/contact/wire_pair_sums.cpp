@@ -62,8 +62,8 @@ void WirePairPart::set_bristle_rates(const Eigen::VectorXd& y, Eigen::VectorXd& 
     rate.segment(bristles_[w], 2 * rods_[w]->vertices()) = found.bristles[w].rates.reshaped();
 }
 
-// Stretches of the first wire are points of the contact; what is integrated along the second wire belongs to the one beside
-// which it acts.
+// Stretches of the first wire are points of the contact; what is integrated along the second wire belongs to
+// the one beside which it acts.
 ContactSample WirePairPart::closed_sample(const VectorView& y) const {
   ContactSample sum;
   const ContactCache& found = found_at(y);
@@ -160,8 +160,8 @@ std::optional<base::InputProblem> WirePairPart::overlap(const VectorView& y, dou
                             "must be >= 0 m at the start"};
 }
 
-// Both wires are counted: what their contact does to momentum is what it presses on rigidly held components, and what it
-// does not twist them.
+// Both wires are counted: what their contact does to momentum is what it presses on rigidly held components,
+// and what it does not twist them.
 void WirePairPart::add_rates(const numerics::DaePoint& at, const IntegralRates& rates) const {
   const Sums s = sums(at.y);
   Eigen::Ref<Eigen::VectorXd> all = rates.all;

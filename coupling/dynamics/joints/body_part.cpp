@@ -73,7 +73,8 @@ void BodyPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
     rows.segment<3>(spin()) += w;
     return;
   }
-  // Inertia less forces: m v' + c v - F = 0 in the world, I w' + w x I w + c w = 0 in the body. Others add theirs.
+  // Inertia less forces: m v' + c v - F = 0 in the world, I w' + w x I w + c w = 0 in the body. Others add
+  // theirs.
   const Matrix3d& inertia = body_.properties.inertia;
   rows.segment<3>(velocity()) +=
       body_.properties.mass * at.rate.segment<3>(velocity()) + body_.linear_drag * v - force_;

@@ -10,8 +10,8 @@ namespace snare::coupling {
 
 /// A rigid body as part of a DAE.                                                       theory.md (M.5)
 ///   p' = v,  q' = 1/2 q (0, w) + nu q,  |q|^2 = 1,  m v' + c v = F,  I w' + w x I w + c w = T
-/// p, v of the centre of mass in the world; w, I and T in the body. A driven body has v = course(t), w = 0 instead. nu,
-/// which vanishes but for the integrator's error, keeps the quaternion's length.
+/// p, v of the centre of mass in the world; w, I and T in the body. A driven body has v = course(t), w = 0
+/// instead. nu, which vanishes but for the integrator's error, keeps the quaternion's length.
 class BodyPart final : public numerics::DaePart {
  public:
   /// The body stays as given; gravity in the world [m/s^2].
@@ -24,7 +24,8 @@ class BodyPart final : public numerics::DaePart {
   void residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) override;
   void jacobian(const numerics::DaePoint& at, double c, std::vector<double>& values) override;
 
-  /// Its unknowns that leave a plane across axis `normal` of the world (0 to 2), or turn out of it: see RodPart.
+  /// Its unknowns that leave a plane across axis `normal` of the world (0 to 2), or turn out of it: see
+  /// RodPart.
   [[nodiscard]] std::vector<int> unknowns_across(int normal) const;
 
   /// Writes the body's start into its places among the unknowns y (SI units).
@@ -35,7 +36,8 @@ class BodyPart final : public numerics::DaePart {
   [[nodiscard]] multibody::RigidBodyState state(const numerics::VectorView& y) const;
   [[nodiscard]] const MotionBody& body() const { return body_; }
   [[nodiscard]] bool moves_freely() const { return !body_.driven; }
-  /// First unknowns, and rows of the equations above in their order: p_WB, quaternion (w, x, y, z), v, w in B, nu.
+  /// First unknowns, and rows of the equations above in their order: p_WB, quaternion (w, x, y, z), v, w in
+  /// B, nu.
   [[nodiscard]] int position() const { return first_ + Local::position; }
   [[nodiscard]] int quaternion() const { return first_ + Local::quaternion; }
   [[nodiscard]] int velocity() const { return first_ + Local::velocity; }

@@ -9,11 +9,11 @@
 
 namespace snare::coupling {
 
-/// A bushing in a DAE: no unknowns, a wrench on either carrier.                                       theory.md (M.22)
+/// A bushing in a DAE: no unknowns, a wrench on either carrier.                              theory.md (M.22)
 ///
 ///   d = R_A^T (p_B - p_A),  phi = log(R_A^T R_B):   F = -(K d + C d'),  M = -(J^-T(phi) K_r phi + C_r w)
-/// on B in the axes of A, and the opposite on A at the same point; J: of the rotation vector's rate, phi' = J^-1 w. The energy
-/// d.K d/2 + phi.K_r phi/2 is that of any turn below half a revolution.
+/// on B in the axes of A, and the opposite on A at the same point; J: of the rotation vector's rate, phi' =
+/// J^-1 w. The energy d.K d/2 + phi.K_r phi/2 is that of any turn below half a revolution.
 class BushingPart final : public FrameForces {
  public:
   BushingPart(const MotionBushing& bushing, MovingFrame first, MovingFrame second);

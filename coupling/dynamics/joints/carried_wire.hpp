@@ -9,12 +9,12 @@
 
 namespace snare::coupling {
 
-/// A wire that starts with the motion of what carries its ends.                                theory.md (M.17)
+/// A wire that starts with the motion of what carries its ends.                              theory.md (M.17)
 ///
 ///   v(S) = (1 - s) V_1(X) + s V_2(X),   s = S/L,   V_k(x) = v_k + omega_k x (x - p_k)
-/// V_k is the rigid motion of the carrier of end k, zero for a mount in the world. With both ends on one carrier the wire
-/// moves rigidly with it. Between two carriers the field meets both ends, stretches the wire evenly, and shifts by whatever rigid
-/// motion is superposed on both. A free end follows the other carrier.
+/// V_k is the rigid motion of the carrier of end k, zero for a mount in the world. With both ends on one
+/// carrier the wire moves rigidly with it. Between two carriers the field meets both ends, stretches the wire
+/// evenly, and shifts by whatever rigid motion is superposed on both. A free end follows the other carrier.
 struct CarriedWire {
   const wire::RodPart* rod = nullptr;
   int wire = 0;                                ///< its index

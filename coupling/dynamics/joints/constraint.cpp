@@ -7,8 +7,8 @@ namespace snare::coupling {
 using Eigen::VectorXd;
 using numerics::VectorView;
 
-// With the multipliers l: dv' = dv + M^-1 G^T l and G dv' + extra = 0, so that (G M^-1 G^T) l = -(G dv + extra). The
-// flexibility G M^-1 G^T is made column by column, from the impulse of each multiplier alone.
+// With the multipliers l: dv' = dv + M^-1 G^T l and G dv' + extra = 0, so that (G M^-1 G^T) l = -(G dv +
+// extra). The flexibility G M^-1 G^T is made column by column, from the impulse of each multiplier alone.
 VectorXd project(const std::vector<const Constraint*>& constraints, const VectorView& y,
                  const VectorXd& extra, VectorXd& dv) {
   Eigen::Index n = 0;

@@ -62,7 +62,8 @@ void ConstraintSet::check(const Motion& motion, Complaints& c) {
                 load.frame, "must act on a frame of the arm");
     }
   }
-  // Welds: each body on one, and a carrier on an earlier one, so that `place` meets carriers before what they hold.
+  // Welds: each body on one, and a carrier on an earlier one, so that `place` meets carriers before what they
+  // hold.
   std::vector<bool> held(motion.bodies.size(), false), later(motion.bodies.size(), false);
   for (const MotionWeld& w : motion.welds) {
     if (w.body >= 0 && at_index(w.body) < later.size()) later[at_index(w.body)] = true;
@@ -325,7 +326,8 @@ void ConstraintSet::add_energy(const VectorView& y, EnergyBalance& energy, Motio
     multibody::Kinematics kinematics(a.model.tree);
     multibody::place(a.model.tree, state.q, kinematics);
     multibody::set_moving(a.model.tree, state.v, kinematics);
-    // Kinetic energy of the tree and of the motors (Im qm'^2/2); what is left of the total is that of the springs.
+    // Kinetic energy of the tree and of the motors (Im qm'^2/2); what is left of the total is that of the
+    // springs.
     const double links = multibody::kinetic_energy(a.model.tree, kinematics);
     const double potential = multibody::potential_energy(a.model.tree, kinematics);
     double motors = 0.0;
@@ -378,8 +380,8 @@ void ConstraintSet::add_load(const LoadPart& load, const DaePoint& at, Outer& su
   sum.moment += w.moment + s.X_WF.p.cross(w.force);
 }
 
-// Forces and moments about the origin on everything whose momentum is counted: what carriers give whose own is not, and
-// weight and loads of floating arms. A carrier that nothing moves freely works: P = F.v + M.w.
+// Forces and moments about the origin on everything whose momentum is counted: what carriers give whose own
+// is not, and weight and loads of floating arms. A carrier that nothing moves freely works: P = F.v + M.w.
 ConstraintSet::Outer ConstraintSet::outer(const DaePoint& at) const {
   Outer sum;
   const auto add = [&](const Constraint& constraint, const Vector3d& moment) {

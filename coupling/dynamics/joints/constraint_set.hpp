@@ -19,8 +19,9 @@
 
 namespace snare::coupling {
 
-/// Arms, welds, moving mounts and bushings of one run.                         theory.md (M.15)-(M.17), (M.22)
-/// Unknowns y, their changes dv, their rates and all multipliers are those of the whole run, in SI units; times in s.
+/// Arms, welds, moving mounts and bushings of one run.                        theory.md (M.15)-(M.17), (M.22)
+/// Unknowns y, their changes dv, their rates and all multipliers are those of the whole run, in SI units;
+/// times in s.
 class ConstraintSet {
  public:
   /// What is wrong with them.
@@ -36,8 +37,8 @@ class ConstraintSet {
   void append(std::vector<numerics::DaePart*>& parts);
   [[nodiscard]] int event_count() const;
 
-  /// Writes into y the arms' start and the velocities of everything that is held, from those of its carriers. A wire without
-  /// velocities of its own starts with its carriers: see CarriedWire.
+  /// Writes into y the arms' start and the velocities of everything that is held, from those of its carriers.
+  /// A wire without velocities of its own starts with its carriers: see CarriedWire.
   void place(Eigen::VectorXd& y);
   /// Writes the rates [rad/s] of the edges' angles of the wires that start with their carriers.
   void place_twist_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const;
@@ -45,7 +46,7 @@ class ConstraintSet {
   void zero_multipliers(Eigen::VectorXd& y) const;
   /// Rates of the arms that annul their rows of a residual with vanishing rates of theirs.
   void solve_rates(double time, const Eigen::VectorXd& y, const Eigen::VectorXd& rows, Eigen::VectorXd& rate);
-  /// Adds to changes of the velocities what the constraints make of them.                       theory.md (M.16)
+  /// Adds to changes of the velocities what the constraints make of them.                    theory.md (M.16)
   void project(const Eigen::VectorXd& y, Eigen::VectorXd& dv) const;
   /// Adds to free rates the accelerations of the constraints' forces; returns the multipliers.
   Eigen::VectorXd hold_rates(const Eigen::VectorXd& y, Eigen::VectorXd& rate) const;
@@ -54,8 +55,8 @@ class ConstraintSet {
 
   /// Time up to which nothing of the arms jumps but by an event [s].
   [[nodiscard]] double limit() const { return limit_; }
-  /// After a step: leaves the modes that are over, and changes drives at their times. found: IDA's events of the arms,
-  /// empty when it found none. True: the integration must start anew.
+  /// After a step: leaves the modes that are over, and changes drives at their times. found: IDA's events of
+  /// the arms, empty when it found none. True: the integration must start anew.
   [[nodiscard]] bool process_events(const numerics::DaePoint& at, std::span<const int> found,
                                     Eigen::VectorXd& y);
   /// A new drive of a joint from a time on. The integration must start anew.
@@ -66,19 +67,20 @@ class ConstraintSet {
   /// The frame that a carrier holds where it is wanted at the start.
   [[nodiscard]] MovingFrame frame_of(const MotionCarrier& carrier, const std::deque<BodyPart>& bodies,
                                      const multibody::Pose& X_WF) const;
-  /// Appends to a memory what the parts do not remember themselves, and takes it back at a time: see ArmStepper.
-  /// All that these parts remember, in SI units.
+  /// Appends to a memory what the parts do not remember themselves, and takes it back at a time: see
+  /// ArmStepper. All that these parts remember, in SI units.
   void save_state(std::vector<double>& memory) const;
   void restore_state(double time, std::span<const double>& memory);
   /// Why it cannot go on, if so.
   [[nodiscard]] const std::optional<std::string>& stuck() const { return stuck_; }
 
-  /// Energy that the arms have lost up to here [J]: with that of the integrals it is all that is dissipated. y in SI units.
+  /// Energy that the arms have lost up to here [J]: with that of the integrals it is all that is dissipated.
+  /// y in SI units.
   [[nodiscard]] double lost(const numerics::VectorView& y) const;
   /// Adds the arms' energies and works, and their momentum when nothing holds their base.
   void add_energy(const numerics::VectorView& y, EnergyBalance& energy, MotionSample* sample) const;
-  /// Forces that count as outer ones [N], their moments about the origin [N m], the power of driven carriers [W], and
-  /// what bushings lose [W].
+  /// Forces that count as outer ones [N], their moments about the origin [N m], the power of driven carriers
+  /// [W], and what bushings lose [W].
   struct Outer {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();

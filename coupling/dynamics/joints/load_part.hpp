@@ -9,7 +9,7 @@
 
 namespace snare::coupling {
 
-/// A load over time in a DAE: no unknowns, a wrench on one carrier.                                     theory.md (M.29)
+/// A load over time in a DAE: no unknowns, a wrench on one carrier.                          theory.md (M.29)
 class LoadPart final : public numerics::DaePart {
  public:
   LoadPart(const FrameLoad& load, MovingFrame frame) : load_(load), frame_(std::move(frame)) {}

@@ -16,8 +16,8 @@ using numerics::VectorView;
 
 namespace {
 
-// Unknowns of the half cell: two vertices, whose rates are unknowns themselves, an angle, and of a rod of higher order
-// two curvatures.
+// Unknowns of the half cell: two vertices, whose rates are unknowns themselves, an angle, and of a rod of
+// higher order two curvatures.
 constexpr std::size_t cell_vertices = 6;
 using CellVector = Eigen::Matrix<double, wire::MountCell::count, 1>;
 
@@ -250,7 +250,8 @@ Wrench MountPart::add_change(const Hold& h, const VectorView& y, int column, con
   return {-dr.cross(h.force) - h.r.cross(df), -df};
 }
 
-// By the unknowns of the end, of the multipliers and of the slip, of a mount that gives; with the wrench's changes on the carrier.
+// By the unknowns of the end, of the multipliers and of the slip, of a mount that gives; with the wrench's
+// changes on the carrier.
 std::vector<std::pair<int, Wrench>> MountPart::add_own_changes(const Hold& h, const VectorView& y, double c,
                                                                const numerics::PatternValues& into) const {
   std::vector<std::pair<int, Wrench>> changes;
@@ -291,8 +292,8 @@ void MountPart::jacobian(const DaePoint& at, double c, std::vector<double>& valu
   } else {
     add_rigid(into);
   }
-  // Constraint, half cell and the wrench (M - r x f, -f) by coordinates and velocities of the carrier, through the turn,
-  // the shift and the spin of the mount.
+  // Constraint, half cell and the wrench (M - r x f, -f) by coordinates and velocities of the carrier,
+  // through the turn, the shift and the spin of the mount.
   Matrix6X wrench_by_q = Matrix6X::Zero(6, d.place.cols()),
            wrench_by_v = Matrix6X::Zero(6, d.jacobian.cols());
   for (std::size_t k = 0; k < q.size(); ++k) {
@@ -319,7 +320,8 @@ void MountPart::jacobian(const DaePoint& at, double c, std::vector<double>& valu
     wrench_by_v.col(column).tail<3>() = by.force;
   }
   if (!carrier().moves_freely()) return;
-  // Rows of the carrier, -J^T (M - r x f, -f): J turns with q, M changes with the mount and with the half cell.
+  // Rows of the carrier, -J^T (M - r x f, -f): J turns with q, M changes with the mount and with the half
+  // cell.
   Wrench wrench{cell.moment, -h.force};
   if (give_.gives()) wrench.moment -= h.r.cross(h.force);
   const Eigen::MatrixXd by_q = d.force(wrench) + d.jacobian.transpose() * wrench_by_q;

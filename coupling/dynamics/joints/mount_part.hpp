@@ -8,15 +8,16 @@
 
 namespace snare::coupling {
 
-/// One end of a wire held by a frame that moves, or that gives along its axis.               theory.md (M.17), (M.38)
+/// One end of a wire held by a frame that moves, or that gives along its axis.       theory.md (M.17), (M.38)
 ///
 ///   B^T r = 0,  B^T w = 0,  r = x - p_WM,  w = v - v_M - omega x r
-/// x, v: the end vertex; M: the mount's frame, its x axis a the direction of increasing arc length, its y axis the director. A rigid mount
-/// holds all three axes; of one that gives, B has the two across a, and along it acts
+/// x, v: the end vertex; M: the mount's frame, its x axis a the direction of increasing arc length, its y
+/// axis the director. A rigid mount holds all three axes; of one that gives, B has the two across a, and
+/// along it acts
 ///   s = -k (u - z) - c u',  u = a.r,  u' = a.w
-/// where z' is the slip of the spring beyond its largest force. The force f = B l + s a on the vertex has the multiplier l, stabilised by
-/// another one in x' = v + B mu; the carrier gets -f at x, and the moment of the half cell beside the mount. The wire is discretised as between
-/// mounts that stand still.
+/// where z' is the slip of the spring beyond its largest force. The force f = B l + s a on the vertex has the
+/// multiplier l, stabilised by another one in x' = v + B mu; the carrier gets -f at x, and the moment of the
+/// half cell beside the mount. The wire is discretised as between mounts that stand still.
 class MountPart final : public Constraint {
  public:
   /// Lets the end of the rod be carried: before the rod declares its unknowns.
@@ -37,7 +38,8 @@ class MountPart final : public Constraint {
   /// Constraint: what B^T w changes by along the rates of the coordinates while the velocities stay [m/s^2].
   [[nodiscard]] Eigen::VectorXd acceleration_bias(const numerics::VectorView& y,
                                                   const Eigen::VectorXd& rate) const override;
-  /// Constraint: B l/m of the end vertex, m its inertia, and what the opposite does to a carrier that moves freely.
+  /// Constraint: B l/m of the end vertex, m its inertia, and what the opposite does to a carrier that moves
+  /// freely.
   void apply_impulse(const numerics::VectorView& y, const Eigen::VectorXd& multipliers,
                      Eigen::VectorXd& dv) const override;
   /// Force f on the wire's end, and its moment r x f about the mount; the half cell's is `moment`.
@@ -73,13 +75,15 @@ class MountPart final : public Constraint {
     double rate = 0.0, by_strain = 0.0;
   };
   [[nodiscard]] Slip slip(double strain) const;
-  /// What moves when an unknown does: the end, the mount's place, and the velocities of both. A turn leaves a rigid mount's axes.
+  /// What moves when an unknown does: the end, the mount's place, and the velocities of both. A turn leaves a
+  /// rigid mount's axes.
   struct Change {
     Eigen::Vector3d turn = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
     Eigen::Vector3d spin = Eigen::Vector3d::Zero(), velocity = Eigen::Vector3d::Zero();
     Eigen::Vector3d end_shift = Eigen::Vector3d::Zero(), end_velocity = Eigen::Vector3d::Zero();
   };
-  /// Adds what follows from it, of what gives: rows of the constraint, of the end and of z. Returns the wrench's change on the carrier.
+  /// Adds what follows from it, of what gives: rows of the constraint, of the end and of z. Returns the
+  /// wrench's change on the carrier.
   multibody::Wrench add_change(const Hold& h, const numerics::VectorView& y, int column, const Change& change,
                                const numerics::PatternValues& into) const;
   void add_rigid(const numerics::PatternValues& into) const;
@@ -87,8 +91,8 @@ class MountPart final : public Constraint {
       const Hold& h, const numerics::VectorView& y, double c, const numerics::PatternValues& into) const;
   void append_sparsity_of_give(std::vector<std::pair<int, int>>& entries) const;
 
-  /// Unknowns of the half cell (wire::MountCell): vertex at the mount, next vertex, angle of the edge between; and
-  /// the rows of their balances, which for the vertices are the unknowns v too.
+  /// Unknowns of the half cell (wire::MountCell): vertex at the mount, next vertex, angle of the edge
+  /// between; and the rows of their balances, which for the vertices are the unknowns v too.
   [[nodiscard]] std::vector<int> places() const;
   [[nodiscard]] std::vector<int> balances() const;
   void append_curvatures(std::vector<int>& list) const;

@@ -93,10 +93,11 @@ Matrix6X MovingFrame::jacobian(const VectorView& y) const {
                                    (kinematics.X_WB[static_cast<std::size_t>(tree_body_)] * X_CF_).p);
 }
 
-// A body's coordinates are the centre of mass and the quaternion, whose change dq turns it by phi = 4 R Q^T dq. Then
-// dp_WF = dp + phi x R p_BF, and of J = [0 R; 1 -R [p_BF]] the columns of the spin turn with R.
-// Moving axis j (s_j, and v_j at the frame's origin) of an arm carries the axes of its own joint and all outward of it along:
-// ds_i = s_j x s_i, dv_i = s_j x v_i, and moves the origin for those inward: dv_i = s_i x v_j.
+// A body's coordinates are the centre of mass and the quaternion, whose change dq turns it by phi = 4 R Q^T
+// dq. Then dp_WF = dp + phi x R p_BF, and of J = [0 R; 1 -R [p_BF]] the columns of the spin turn with R.
+// Moving axis j (s_j, and v_j at the frame's origin) of an arm carries the axes of its own joint and all
+// outward of it along: ds_i = s_j x s_i, dv_i = s_j x v_i, and moves the origin for those inward: dv_i = s_i
+// x v_j.
 template <class Each>
 void MovingFrame::Derivatives::for_changes(const Each& each) const {
   const auto angular = [this](int i) -> Vector3d { return jacobian.col(i).head<3>(); };

@@ -9,11 +9,11 @@
 
 namespace snare::coupling {
 
-/// A frame that a body, an arm or the world carries, as constraints see it.                    theory.md (M.15)
+/// A frame that a body, an arm or the world carries, as constraints see it.                  theory.md (M.15)
 ///
-/// Its place depends on the unknowns `coordinates()`, its motion on these and on `velocities()`; the rows of the same
-/// index as the velocities are the balances of force to which a wrench on the frame adds -J^T F. A body that is driven
-/// has coordinates but no rows.
+/// Its place depends on the unknowns `coordinates()`, its motion on these and on `velocities()`; the rows of
+/// the same index as the velocities are the balances of force to which a wrench on the frame adds -J^T F. A
+/// body that is driven has coordinates but no rows.
 class MovingFrame {
  public:
   /// Fixed in the world.
@@ -42,12 +42,14 @@ class MovingFrame {
     multibody::Matrix6X jacobian;  ///< motion by velocities: J
     multibody::Matrix6X place;     ///< turn and shift by coordinates
     multibody::Matrix6X motion;    ///< motion by coordinates
-    /// (columns of the jacobian x coordinates): derivative of J^T F for a wrench that is fixed in the world, by M and F.
+    /// (columns of the jacobian x coordinates): derivative of J^T F for a wrench that is fixed in the world,
+    /// by M and F.
     [[nodiscard]] Eigen::MatrixXd force(const multibody::Wrench& wrench) const;
 
    private:
     friend class MovingFrame;
-    /// Calls `each(i, j, change)` with the change of column i of J when j moves: an axis of the arm, or a component of the quaternion.
+    /// Calls `each(i, j, change)` with the change of column i of J when j moves: an axis of the arm, or a
+    /// component of the quaternion.
     template <class Each>
     void for_changes(const Each& each) const;
     void add_motion(const Eigen::Ref<const Eigen::VectorXd>& velocities);
@@ -64,7 +66,8 @@ class MovingFrame {
   /// J alone, (6, velocities); y in SI units.
   [[nodiscard]] multibody::Matrix6X jacobian(const numerics::VectorView& y) const;
 
-  /// Indices of the unknowns on which the frame's place depends, and of those on which its motion depends besides.
+  /// Indices of the unknowns on which the frame's place depends, and of those on which its motion depends
+  /// besides.
   [[nodiscard]] std::vector<int> coordinates() const;
   [[nodiscard]] std::vector<int> velocities() const;
   /// Whether forces on it move it.

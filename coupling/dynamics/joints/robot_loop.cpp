@@ -24,8 +24,8 @@ MotionBody RobotLoop::moved() const {
   return body;
 }
 
-// A force that jumps does so where a step ends: at both of its ends the force is that from within it, so that two records of one time have the
-// force before and behind.
+// A force that jumps does so where a step ends: at both of its ends the force is that from within it, so that
+// two records of one time have the force before and behind.
 void RobotLoop::sense_forces(double from, double to, const Force& force) {
   constexpr int pieces = 4;
   constexpr double within = 1e-6;  // of a piece

@@ -11,11 +11,11 @@
 
 namespace snare::coupling {
 
-/// The course of a body that a robot moves by the force it measures, late.                             theory.md (M.32)
+/// The course of a body that a robot moves by the force it measures, late.                   theory.md (M.32)
 ///
-/// Impulse and force at the integrator's steps and at quarters of them, between these the cubic that has both at both ends; no step is longer
-/// than the delay, so that what a step asks for has always been measured. What begins anew in the motion, or touches, does so again in the
-/// course a delay later.
+/// Impulse and force at the integrator's steps and at quarters of them, between these the cubic that has both
+/// at both ends; no step is longer than the delay, so that what a step asks for has always been measured.
+/// What begins anew in the motion, or touches, does so again in the course a delay later.
 class RobotLoop {
  public:
   /// The body stays the caller's and outlives it.
@@ -28,11 +28,13 @@ class RobotLoop {
   [[nodiscard]] MotionBody moved() const;
   /// Force on the body at a time [s] within the step that has just been made [N].
   using Force = std::function<Eigen::Vector3d(double time)>;
-  /// A step from a time to another [s], or none where they are one: what presses on the body. The integrator does not watch the error of an
-  /// integral of the force, so it is taken by Simpson's rule on quarters of the step.
+  /// A step from a time to another [s], or none where they are one: what presses on the body. The integrator
+  /// does not watch the error of an integral of the force, so it is taken by Simpson's rule on quarters of
+  /// the step.
   void sense_forces(double from, double to, const Force& force);
   [[nodiscard]] const MotionRobot& robot() const { return *body_.robot; }
-  /// The integration has come to a time [s]; anew: it begins anew there. Whether it must, as it did a delay earlier.
+  /// The integration has come to a time [s]; anew: it begins anew there. Whether it must, as it did a delay
+  /// earlier.
   [[nodiscard]] bool begin_interval(double time, bool anew);
   /// The first time behind a time at which it must [s]; infinite: none.
   [[nodiscard]] double next_break(double time) const;

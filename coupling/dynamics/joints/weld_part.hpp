@@ -7,8 +7,8 @@ namespace snare::coupling {
 /// A frame H of a body B welded to a frame A of another body, of an arm or of the world.    theory.md (M.15)
 ///
 ///   sum_k a_k x h_k / 2 = 0  (axes a_k of A, h_k of H),   p_WH - p_WA = 0;   w_H - w_A = 0,  v_H - v_A = 0
-/// with the wrench (M, F) on B about H's origin, and -(M, F) on the carrier of A, as multipliers; stabilised by six more
-/// in the kinematics of the held body alone: p' = v + mu_p, q' = 1/2 q (0, w + mu_w), mu_w in B.
+/// with the wrench (M, F) on B about H's origin, and -(M, F) on the carrier of A, as multipliers; stabilised
+/// by six more in the kinematics of the held body alone: p' = v + mu_p, q' = 1/2 q (0, w + mu_w), mu_w in B.
 class WeldPart final : public Constraint {
  public:
   /// carrier: A. X_BH: of H in the held body, which moves freely.
@@ -33,7 +33,8 @@ class WeldPart final : public Constraint {
   [[nodiscard]] double gap(const numerics::VectorView& y) const override;
 
  private:
-  // First of three multipliers each, and of the rows of the same index: turn, place, angular and linear velocity.
+  // First of three multipliers each, and of the rows of the same index: turn, place, angular and linear
+  // velocity.
   [[nodiscard]] int moment() const { return multipliers(); }
   [[nodiscard]] int force() const { return multipliers() + 3; }
   [[nodiscard]] int turn_stabiliser() const { return stabiliser_; }

@@ -24,7 +24,8 @@ class LawPart final : public numerics::DaePart, public Interaction {
   [[nodiscard]] int event_count() const override { return 1; }
   void events(const numerics::DaePoint& at, std::span<double> values) override;
 
-  /// What it does at a state: gap -d [m], force F n [N] on what stands for the wire, and its point on the body [m].
+  /// What it does at a state: gap -d [m], force F n [N] on what stands for the wire, and its point on the
+  /// body [m].
   [[nodiscard]] ContactSample sample(const numerics::DaePoint& at) const override;
   /// Energy of the law's spring [J], and power that its damping takes from body and plane [W], >= 0.
   struct Power {

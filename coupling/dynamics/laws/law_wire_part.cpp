@@ -20,10 +20,12 @@ namespace {
 
 enum Frame : std::size_t { from, to, on_shaft };
 
-/// Larger than any wire bears without breaking: a string that begins with more would have to be behind the shaft.
+/// Larger than any wire bears without breaking: a string that begins with more would have to be behind the
+/// shaft.
 constexpr double largest_strain = 0.02;
 
-/// Where the chord and the shaft's axis are nearest: along the chord from the first mount, and along the axis. Parallel: nowhere.
+/// Where the chord and the shaft's axis are nearest: along the chord from the first mount, and along the
+/// axis. Parallel: nowhere.
 template <class S>
 struct NearestOfLines {
   bool exists = false;
@@ -65,8 +67,9 @@ struct PlaneCrossing {
   }
 };
 
-/// A tangent from a mount, at a distance from the axis, to the shaft: t = sqrt(rho^2 - r^2), acos(r/rho), and t - r acos(r/rho), whose
-/// slope is t/rho; it meets the shaft at r^2/rho along the way to the mount. A mount into which the shaft is pressed, rho <= r, has none of
+/// A tangent from a mount, at a distance from the axis, to the shaft: t = sqrt(rho^2 - r^2), acos(r/rho), and
+/// t - r acos(r/rho), whose slope is t/rho; it meets the shaft at r^2/rho along the way to the mount. A mount
+/// into which the shaft is pressed, rho <= r, has none of
 /// them: the string goes on along the surface, and pulls at the mount itself.
 template <class S>
 struct Tangent {
@@ -130,7 +133,8 @@ void add_friction(std::array<FrameWrench<S>, 3>& wrenches, const std::array<Fram
   wrenches[to].add(frames[to], point, -force * share);
 }
 
-// The velocity that friction works against: of the shaft across a unit vector n, against what carries the mounts, by their shares.
+// The velocity that friction works against: of the shaft across a unit vector n, against what carries the
+// mounts, by their shares.
 template <class S>
 Vector3<S> slide_at(const std::array<FrameMotion<S>, 3>& frames, const Vector3<S>& point, const S& share,
                     const Vector3<S>& n) {
@@ -169,9 +173,10 @@ LawWirePart::Stop<S> LawWirePart::stop(const std::array<FrameMotion<S>, 3>& fram
   return s;
 }
 
-// A string round a cylinder unrolls to a straight line: in the plane across the axis two tangents t_k = sqrt(rho_k^2 - r^2) and an
-// arc r phi, phi = Phi - acos(r/rho_1) - acos(r/rho_2), Phi the angle between the mounts as seen from the axis on the side of the
-// bulge; with the height h along the axis l = sqrt((t_1 + t_2 + r phi)^2 + h^2). dl is that of the ends along the string alone.
+// A string round a cylinder unrolls to a straight line: in the plane across the axis two tangents t_k =
+// sqrt(rho_k^2 - r^2) and an arc r phi, phi = Phi - acos(r/rho_1) - acos(r/rho_2), Phi the angle between the
+// mounts as seen from the axis on the side of the bulge; with the height h along the axis l = sqrt((t_1 + t_2
+// + r phi)^2 + h^2). dl is that of the ends along the string alone.
 template <class S>
 LawWirePart::Action<S> LawWirePart::stretched(const std::array<FrameMotion<S>, 3>& frames) const {
   using std::atan2, std::sqrt;
@@ -243,9 +248,10 @@ LawWirePart::Action<S> LawWirePart::stretched(const std::array<FrameMotion<S>, 3
   return a;
 }
 
-// The rod points from its pivot to the other mount; the shaft, a circle of radius r at the distance rho from the pivot, lets it turn
-// up to the tangent: x = l (asin(delta/rho) + asin(r/rho)), l = sqrt(rho^2 - r^2), delta the axis' distance behind the rod. All forces together
-// do the work of F dx: across the rod F dx/ddelta, along it F dx/ds on whatever moves the place s of the shaft.
+// The rod points from its pivot to the other mount; the shaft, a circle of radius r at the distance rho from
+// the pivot, lets it turn up to the tangent: x = l (asin(delta/rho) + asin(r/rho)), l = sqrt(rho^2 - r^2),
+// delta the axis' distance behind the rod. All forces together do the work of F dx: across the rod F
+// dx/ddelta, along it F dx/ds on whatever moves the place s of the shaft.
 template <class S>
 LawWirePart::Action<S> LawWirePart::rod(const std::array<FrameMotion<S>, 3>& frames) const {
   using std::asin, std::sqrt;
@@ -308,8 +314,9 @@ LawWirePart::Action<S> LawWirePart::rod(const std::array<FrameMotion<S>, 3>& fra
   return a;
 }
 
-// A shift dx of the shaft's material at q, where the axis a goes through the plane of normal m, moves that place by dx - a (m.dx)/(m.a): the
-// law's force g, in the plane, is the force g - m (g.a)/(m.a) on the material, across the axis.
+// A shift dx of the shaft's material at q, where the axis a goes through the plane of normal m, moves that
+// place by dx - a (m.dx)/(m.a): the law's force g, in the plane, is the force g - m (g.a)/(m.a) on the
+// material, across the axis.
 template <class S>
 LawWirePart::Action<S> LawWirePart::push(const std::array<FrameMotion<S>, 3>& frames) const {
   using std::sqrt;

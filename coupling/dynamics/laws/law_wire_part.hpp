@@ -14,7 +14,7 @@ namespace snare::coupling {
 template <class S>
 struct FrameMotion;
 
-/// A wire for which a law stands, in a DAE.                                                             theory.md (M.27)
+/// A wire for which a law stands, in a DAE.                                                  theory.md (M.27)
 class LawWirePart final : public UnilateralForcePart {
  public:
   /// Frames on the carriers of its ends, there, and of the shaft.

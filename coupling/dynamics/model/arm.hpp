@@ -11,7 +11,8 @@
 
 namespace snare::coupling {
 
-/// An arm in a motion. Its gravity is that of the motion. Times of its drives, switches and loads count from the start.
+/// An arm in a motion. Its gravity is that of the motion. Times of its drives, switches and loads count from
+/// the start.
 struct MotionArm {
   std::string name = "arm";
   multibody::ElasticArm arm;
@@ -38,15 +39,16 @@ struct MotionCarrier {
   [[nodiscard]] bool operator==(const MotionCarrier&) const = default;
 };
 
-/// A free body held by a carrier in the pose in which it starts; it starts with the carrier's motion, whatever its own says.
-/// A body is held by one weld, and a body that carries is held, if at all, by an earlier one.
+/// A free body held by a carrier in the pose in which it starts; it starts with the carrier's motion,
+/// whatever its own says. A body is held by one weld, and a body that carries is held, if at all, by an
+/// earlier one.
 struct MotionWeld {
   std::string name = "weld";
   MotionCarrier carrier;
   int body = 0;  ///< index
 };
 
-/// How a mount gives along its axis: a spring that may slip, and a parallel dashpot.                   theory.md (M.38)
+/// How a mount gives along its axis: a spring that may slip, and a parallel dashpot.         theory.md (M.38)
 struct MountGive {
   double stiffness = std::numeric_limits<double>::infinity();  ///< [N/m], > 0; infinite: it does not give
   double damping = 0.0;                                        ///< [N s/m], >= 0
@@ -58,8 +60,8 @@ struct MountGive {
   [[nodiscard]] bool slips() const { return !std::isinf(slip_force); }
 };
 
-/// An end of a wire on a carrier, held where the wire's mount stands at the start; it starts with the carrier's motion. The wire's own end
-/// must be rigid along x: clamp, twisting pin or pin.
+/// An end of a wire on a carrier, held where the wire's mount stands at the start; it starts with the
+/// carrier's motion. The wire's own end must be rigid along x: clamp, twisting pin or pin.
 struct MotionMount {
   std::string name = "mount";
   int wire = 0;  ///< index

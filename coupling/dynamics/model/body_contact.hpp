@@ -14,10 +14,11 @@
 
 namespace snare::coupling {
 
-/// Points of one carrier that touch a shape of another: a plate on a housing, a cam in a guide.            theory.md (M.28)
+/// Points of one carrier that touch a shape of another: a plate on a housing, a cam in a guide.
+///                                                                                           theory.md (M.28)
 ///
-/// Each point is a ball of `radius` (0: a point) and bears the law on its own, F(d, d') of its depth in the shape along the shape's
-/// normal. Edges that cross between the points are not seen.
+/// Each point is a ball of `radius` (0: a point) and bears the law on its own, F(d, d') of its depth in the
+/// shape along the shape's normal. Edges that cross between the points are not seen.
 struct BodyContact {
   std::string name = "contact";
   MotionCarrier carrier;                      ///< of the shape

@@ -10,10 +10,10 @@
 
 namespace snare::coupling {
 
-/// A spring of six freedoms with damping between two carriers: an attachment that gives.              theory.md (M.22)
+/// A spring of six freedoms with damping between two carriers: an attachment that gives.     theory.md (M.22)
 ///
-/// A frame on either carrier: where both are in one place nothing acts. Stiffnesses and dampings act along and about the axes of the
-/// first carrier's.
+/// A frame on either carrier: where both are in one place nothing acts. Stiffnesses and dampings act along
+/// and about the axes of the first carrier's.
 struct MotionBushing {
   std::string name = "bushing";
   MotionCarrier first, second;

@@ -24,8 +24,8 @@ std::vector<HermiteCurve> curves_through(const Matrix3Xd& values, const std::vec
   return curves;
 }
 
-/// Unit vector across a direction: the axis of the world that is least along it, made perpendicular. Of a wire in a plane across an
-/// axis it is that axis.
+/// Unit vector across a direction: the axis of the world that is least along it, made perpendicular. Of a
+/// wire in a plane across an axis it is that axis.
 Vector3d director_across(const Vector3d& direction) {
   int axis = 0;
   for (const int k : {1, 2}) {

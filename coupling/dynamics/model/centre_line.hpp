@@ -16,13 +16,15 @@ struct LinePoints {
   std::vector<double> coordinates;  ///< from 0 on, ascending: material ones, or along the line [m]
 };
 
-/// More points on the curve that a spline over the lengths of their chords draws through points, with how far they lie along it. What the
-/// points have as coordinates is not looked at.                                               theory.md (M.37)
+/// More points on the curve that a spline over the lengths of their chords draws through points, with how far
+/// they lie along it. What the
+/// points have as coordinates is not looked at.                                              theory.md (M.37)
 /// Throws std::domain_error where points lie too close for roundings.
 [[nodiscard]] LinePoints measured_points(const LinePoints& points);
 
-/// The line on which a wire begins a motion: cubic splines of its places and velocities over the material coordinate S, as a
-/// lath would lie through the points.                                                         theory.md (M.37)
+/// The line on which a wire begins a motion: cubic splines of its places and velocities over the material
+/// coordinate S, as a
+/// lath would lie through the points.                                                        theory.md (M.37)
 class CentreLine {
  public:
   /// Throws std::domain_error where coordinates lie too close for roundings.
@@ -49,8 +51,8 @@ class CentreLine {
   Curves x_, v_;
 };
 
-/// Lays a wire of the line's length onto it, without twist: places and velocities of its vertices, and its ends, which hold the directions
-/// that the line has there.
+/// Lays a wire of the line's length onto it, without twist: places and velocities of its vertices, and its
+/// ends, which hold the directions that the line has there.
 void begin_on(const CentreLine& line, MotionWire& wire);
 
 }  // namespace snare::coupling

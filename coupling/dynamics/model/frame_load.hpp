@@ -11,10 +11,10 @@
 
 namespace snare::coupling {
 
-/// A force and a moment on a frame over time: a thruster, a pull.                                       theory.md (M.29)
+/// A force and a moment on a frame over time: a thruster, a pull.                            theory.md (M.29)
 ///
-/// Straight between its times, or with half a sine of what stands at the first of two; nothing before the first and after the last; a jump
-/// is two equal times.
+/// Straight between its times, or with half a sine of what stands at the first of two; nothing before the
+/// first and after the last; a jump is two equal times.
 struct FrameLoad {
   std::string name = "load";
   MotionCarrier carrier;

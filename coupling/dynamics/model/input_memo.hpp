@@ -9,8 +9,8 @@
 
 namespace snare::coupling {
 
-/// The unknowns on which a part depends, as they were when it was evaluated last: what is asked for at the same place again and again is
-/// worked out once.
+/// The unknowns on which a part depends, as they were when it was evaluated last: what is asked for at the
+/// same place again and again is worked out once.
 class InputMemo {
  public:
   /// The part depends on `count` unknowns from `first` on.

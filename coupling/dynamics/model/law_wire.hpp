@@ -14,7 +14,8 @@
 
 namespace snare::coupling {
 
-/// What a wire between mounts that stand still to each other does to a shaft that pushes it, as a law of the shaft's place says.
+/// What a wire between mounts that stand still to each other does to a shaft that pushes it, as a law of the
+/// shaft's place says.
 struct WirePush {
   double depth = -1.0;                                 ///< travel from first touch [m]; > 0: they touch
   Eigen::Vector2d force = Eigen::Vector2d::Zero();     ///< on the wire, along chord and push [N]
@@ -24,8 +25,8 @@ struct WirePush {
   double lost = 0.0;                                   ///< by damping [W], >= 0
 };
 
-/// Of the place where the shaft's axis goes through the plane of the wire, along chord and push from the first mount [m], and of its
-/// rate along the push [m/s].
+/// Of the place where the shaft's axis goes through the plane of the wire, along chord and push from the
+/// first mount [m], and of its rate along the push [m/s].
 using WirePushLaw = std::function<WirePush(const Eigen::Vector2d& place, double rate)>;
 
 /// A round shaft with which wires meet that a law stands for: a segment on z about its frame's origin.
@@ -37,15 +38,19 @@ struct MotionShaft {
   double half_length = 0.0;  ///< [m], > 0
 };
 
-/// A wire without mass for which a law stands, between two mounts on carriers, and the one shaft that it meets.  theory.md (M.27)
+/// A wire without mass for which a law stands, between two mounts on carriers, and the one shaft that it
+/// meets.
+///                                                                                           theory.md (M.27)
 ///
-/// It holds the shaft on the side away from its bulge. A shaft that is out of its reach along z when it is behind the wire is missed:
-/// nothing acts until it has been before it. The mounts of a string stop the shaft: F = (EA/r) d (1 + a d'), d the depth, r its radius
-/// with the wire's, a the damping of an elastic foundation.
+/// It holds the shaft on the side away from its bulge. A shaft that is out of its reach along z when it is
+/// behind the wire is missed: nothing acts until it has been before it. The mounts of a string stop the
+/// shaft: F = (EA/r) d (1 + a d'), d the depth, r its radius with the wire's, a the damping of an elastic
+/// foundation.
 struct LawWire {
   enum class Kind {
     stretched,  ///< an elastic string, straight and round the shaft: T = EA (l - L)/L
-    rod,  ///< a rod that turns about `from` and is met by the shaft: F(x), x = lever (commanded less actual angle)
+    /// a rod that turns about `from` and is met by the shaft: F(x), x = lever (commanded less actual angle)
+    rod,
     push  ///< a law of pushes across the chord, of mounts that stand still to each other
   };
   std::string name = "wire";

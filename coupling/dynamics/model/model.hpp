@@ -50,7 +50,8 @@ struct MotionBody {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   double linear_drag = 0.0;   ///< force -c v [N s/m], >= 0
   double angular_drag = 0.0;  ///< torque -c w [N m s/rad], >= 0
-  /// Moved as prescribed instead of freely: constant start.velocity, or the course, and no rotation (a machine).
+  /// Moved as prescribed instead of freely: constant start.velocity, or the course, and no rotation (a
+  /// machine).
   bool driven = false;
   /// Of a driven body: velocity [m/s] at a time [s], continuous, and its derivative [m/s^2]. Both or none.
   std::function<Eigen::Vector3d(double time)> course_velocity, course_acceleration;
@@ -68,12 +69,13 @@ struct MotionContact {
   double wire_radius = 0.0;  ///< half the wire's diameter [m], >= 0; > 0 for a shape with edges
   ElasticFoundation foundation;
   MotionFriction friction;
-  /// The papers' contact laws in place of the foundation: normal force [N] of the deepest penetration [m] and its rate
-  /// [m/s], with the derivatives by both; never negative. At every local minimum of the gap.
+  /// The papers' contact laws in place of the foundation: normal force [N] of the deepest penetration [m] and
+  /// its rate [m/s], with the derivatives by both; never negative. At every local minimum of the gap.
   ContactLaw law;
 };
 
-/// Two wires that may touch each other, crossing or side by side, wherever and as often as they do.    theory.md (M.20)
+/// Two wires that may touch each other, crossing or side by side, wherever and as often as they do.
+///                                                                                           theory.md (M.20)
 struct WirePair {
   std::string name = "pair";
   std::array<int, 2> wires{0, 1};         ///< indices of two wires
@@ -100,8 +102,8 @@ struct WireFacts {
   WireTightness tightness;
 };
 
-/// Kinds of what presses, in the order in which results count all of it: shapes on wires, point laws, pairs of wires, wires
-/// that laws stand for on their shafts, bodies.
+/// Kinds of what presses, in the order in which results count all of it: shapes on wires, point laws, pairs
+/// of wires, wires that laws stand for on their shafts, bodies.
 enum class ContactKind { shape, point_law, wire_pair, law_wire, bodies };
 
 /// Everything that moves and acts. Indices count within these lists.
@@ -123,7 +125,8 @@ struct Motion {
   std::vector<SensedSignal> sensed;                   ///< for the phases
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
 
-  /// Of all wires, in the order in which results count them: those of the list, then those that laws stand for.
+  /// Of all wires, in the order in which results count them: those of the list, then those that laws stand
+  /// for.
   [[nodiscard]] std::vector<WireFacts> wire_facts() const {
     std::vector<WireFacts> facts;
     for (const MotionWire& w : wires) facts.push_back({w.name, w.strength, w.tightness});

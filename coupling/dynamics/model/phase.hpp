@@ -15,7 +15,8 @@ namespace snare::coupling {
 /// A number of a motion that a phase may wait for. Indices count within the lists of the motion.
 struct MotionSignal {
   enum class Kind {
-    contact_force,  ///< sum of the normal forces of a contact, a spring or a pair of wires, as results count them [N]
+    /// sum of the normal forces of a contact, a spring or a pair of wires, as results count them [N]
+    contact_force,
     wire_tension,  ///< of a wire, from its mean strain [N]
     joint_torque,  ///< size of the torque in the spring of an arm's joint [N m]
     joint_angle,   ///< of an arm's joint, on the link's side [rad]
@@ -37,14 +38,16 @@ struct SignalBound {
   double bound = 0.0;  ///< in the signal's unit
 };
 
-/// What a motor does from a phase on, made when it begins: at a time [s] and with the motor at an angle [rad].
+/// What a motor does from a phase on, made when it begins: at a time [s] and with the motor at an angle
+/// [rad].
 struct PhaseDrive {
   int arm = 0, joint = 0;
   std::function<multibody::Drive(double time, double angle)> make;
 };
 
-/// A stretch of time that begins at a time or on what happens, and changes drives. Phases begin one after the other, in their
-/// order; several may begin at once.                                                                  theory.md (M.23)
+/// A stretch of time that begins at a time or on what happens, and changes drives. Phases begin one after the
+/// other, in their
+/// order; several may begin at once.                                                         theory.md (M.23)
 struct MotionPhase {
   std::string name = "phase";
   double not_before = 0.0;          ///< [s], from the start of the motion

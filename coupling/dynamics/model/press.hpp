@@ -27,8 +27,8 @@ template <class ContactCache>
 
 /// The share of a way, in (0, 1), after which a contact is about `wanted` deep [m].
 ///
-/// at_start: depth at its beginning [m], less than wanted; negative: the gap. depth(share): after a share of the way [m], zero where nothing
-/// touches; at_end: after the whole way [m], larger than wanted.
+/// at_start: depth at its beginning [m], less than wanted; negative: the gap. depth(share): after a share of
+/// the way [m], zero where nothing touches; at_end: after the whole way [m], larger than wanted.
 template <class Depth>
 [[nodiscard]] double share_to_touch(double at_start, double at_end, double wanted, const Depth& depth) {
   constexpr int tries = 30;
@@ -36,7 +36,8 @@ template <class Depth>
   struct Place {
     double share = 0.0, depth = 0.0;
   };
-  // A straight line through two places: a closed one, and another at which the depth is known, as it is not where nothing touches.
+  // A straight line through two places: a closed one, and another at which the depth is known, as it is not
+  // where nothing touches.
   Place open{0.0, at_start}, closed{1.0, at_end}, other = open;
   for (int k = 0; k < tries; ++k) {
     double share =
@@ -54,10 +55,12 @@ template <class Depth>
   return closed.share;
 }
 
-/// Where Newton's method begins with a contact, on the way from accepted to predicted unknowns.            theory.md (M.12)
+/// Where Newton's method begins with a contact, on the way from accepted to predicted unknowns.
+///                                                                                           theory.md (M.12)
 ///
-/// A load grows with d^(3/2) and with the speed of approach: the method finds it from a lighter one, but not from one that is many times too
-/// large, nor from none. So it begins where a touch does, and at the accepted unknowns where the prediction has another load than they.
+/// A load grows with d^(3/2) and with the speed of approach: the method finds it from a lighter one, but not
+/// from one that is many times too large, nor from none. So it begins where a touch does, and at the accepted
+/// unknowns where the prediction has another load than they.
 /// tolerance: of places [m]; gap(): at the accepted unknowns [m]; depth(share): after a share of the way [m].
 template <class Gap, class Depth>
 [[nodiscard]] numerics::IterationStart start_with_contact(const Press& accepted, const Press& predicted,
@@ -77,7 +80,8 @@ template <class Gap, class Depth>
   return {share_to_touch(at_start, predicted.depth, begun, depth)};
 }
 
-/// How a contact pressed at the accepted unknowns. What is closed at unknowns y (SI units) is asked for as found_at(y): see press_of.
+/// How a contact pressed at the accepted unknowns. What is closed at unknowns y (SI units) is asked for as
+/// found_at(y): see press_of.
 class AcceptedPress {
  public:
   AcceptedPress() = default;

@@ -27,8 +27,8 @@ struct ContactSample {
   double arc = 0.0;                                 ///< material coordinate [m]
   double slip_speed = 0.0;                          ///< [m/s]
   bool sticking = false;                            ///< closed, with bristles of which some do not slide
-  /// Of a shape on a wire: its closed stretches, the one that presses most first. Then the forces above are their sums,
-  /// gap and place those of the first, or of the wire's nearest point while all are open.
+  /// Of a shape on a wire: its closed stretches, the one that presses most first. Then the forces above are
+  /// their sums, gap and place those of the first, or of the wire's nearest point while all are open.
   std::vector<ContactSample> points;
 };
 
@@ -42,7 +42,8 @@ struct EnergyBalance {
   /// kinetic + strain + potential + dissipated - work - the same at the start: what the integrator gained
   /// (negative: lost).
   double integrator = 0.0;
-  /// Decreases of the integrated dissipation that were removed from it [J], >= 0: their sum along the run, part of integrator.
+  /// Decreases of the integrated dissipation that were removed from it [J], >= 0: their sum along the run,
+  /// part of integrator.
   double corrected = 0.0;
 };
 
@@ -85,8 +86,8 @@ struct MotionSample {
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< about the origin [kg m^2/s]
 };
 
-/// Tension of a wire, of a law or from the forces of its mounts on its ends: the smaller of their parts along the edges there [N]; negative where
-/// they press.
+/// Tension of a wire, of a law or from the forces of its mounts on its ends: the smaller of their parts along
+/// the edges there [N]; negative where they press.
 [[nodiscard]] double end_tension(const Eigen::Matrix3Xd& positions, const Eigen::Vector3d& left,
                                  const Eigen::Vector3d& right);
 [[nodiscard]] double end_tension(const MotionSample& sample, std::size_t wire);

@@ -9,10 +9,12 @@ namespace snare::coupling {
 struct Motion;
 struct MotionSample;
 
-/// What a sensor tells while a motion runs: three numbers (or one, then two zeros) of its samples, read at a rate, late and with noise.
+/// What a sensor tells while a motion runs: three numbers (or one, then two zeros) of its samples, read at a
+/// rate, late and with noise.
 ///
-/// Reading i comes at i times the interval and tells what was there a delay earlier (at the start where that is before it): the sample of
-/// the output time there, between two output times straight.                                           theory.md (M.23)
+/// Reading i comes at i times the interval and tells what was there a delay earlier (at the start where that
+/// is before it): the sample of
+/// the output time there, between two output times straight.                                 theory.md (M.23)
 struct SensedSignal {
   using Sight = std::function<Eigen::Vector3d(const MotionSample& sample)>;
   std::function<Sight(const Motion& motion)> make;  ///< what it sees, in the unit of its readings

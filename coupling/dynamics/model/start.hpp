@@ -12,8 +12,8 @@ namespace snare::coupling {
 [[nodiscard]] Eigen::Matrix3Xd straight_wire(const wire::RodInMotion& rod, const Eigen::Vector3d& from,
                                              const Eigen::Vector3d& to);
 
-/// The wire at rest between its mounts, buckled to +y in its first mode where it is longer than their distance.
-/// (3, vertices) [m]. Throws InputError when no equilibrium is found.
+/// The wire at rest between its mounts, buckled to +y in its first mode where it is longer than their
+/// distance. (3, vertices) [m]. Throws InputError when no equilibrium is found.
 [[nodiscard]] Eigen::Matrix3Xd resting_wire(const wire::RodInMotion& rod);
 
 }  // namespace snare::coupling

@@ -20,8 +20,9 @@ using numerics::DaePoint;
 
 namespace {
 
-// A start may have 1000 m/s along each axis. A steel wire that is struck breaks at some 230 m/s (theory.md W.35), and what a contact
-// does at a speed near that of the wire's own waves, 5000 m/s, its law does not know.
+// A start may have 1000 m/s along each axis. A steel wire that is struck breaks at some 230 m/s (theory.md
+// W.35), and what a contact does at a speed near that of the wire's own waves, 5000 m/s, its law does not
+// know.
 constexpr double fastest_body = 2000.0;  // [m/s]
 
 }  // namespace

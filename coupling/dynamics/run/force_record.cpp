@@ -19,7 +19,8 @@ void ForceRecord::add(double time, Eigen::VectorXd forces) {
   if (records_.size() > most) records_.pop_front();
 }
 
-// Neville's scheme, from the latest state back: entry k becomes the polynomial through states k to k + degree.
+// Neville's scheme, from the latest state back: entry k becomes the polynomial through states k to k +
+// degree.
 double ForceRecord::at(double time, Eigen::Index index, int states) const {
   const std::size_t count = std::min(records_.size(), static_cast<std::size_t>(states));
   assert(count >= 2);

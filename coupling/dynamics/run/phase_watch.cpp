@@ -54,8 +54,8 @@ void PhaseWatch::start(double time, const Signals& signals, const Kept& kept) {
     kept_since_ = time;
 }
 
-// Straight between the steps; a phase does not begin before its time, whatever its signals did until then. A reading holds until the next
-// one comes, and steps end where one does.
+// Straight between the steps; a phase does not begin before its time, whatever its signals did until then. A
+// reading holds until the next one comes, and steps end where one does.
 std::optional<double> PhaseWatch::look(double time, const Signals& signals, const Kept& kept) {
   if (pending() == nullptr) return std::nullopt;
   const double now = margin(signals);

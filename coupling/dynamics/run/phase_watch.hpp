@@ -11,8 +11,9 @@
 
 namespace snare::coupling {
 
-/// When the phases of a motion begin. Signals are looked at where the integrator has stepped, and taken as straight between: the
-/// unknowns between two steps err by more than a stiff contact forgives.                              theory.md (M.23)
+/// When the phases of a motion begin. Signals are looked at where the integrator has stepped, and taken as
+/// straight between: the
+/// unknowns between two steps err by more than a stiff contact forgives.                     theory.md (M.23)
 class PhaseWatch {
  public:
   /// A signal's present value, in the SI unit of its kind.
@@ -31,7 +32,8 @@ class PhaseWatch {
   [[nodiscard]] double limit(double time) const;
   /// Tells it the signals at the time [s] at which it starts, and behind every begun phase.
   void start(double time, const Signals& signals, const Kept& kept);
-  /// The time within the step from the last one at which the next phase begins, if it does [s]; by the readings that came before its end.
+  /// The time within the step from the last one at which the next phase begins, if it does [s]; by the
+  /// readings that came before its end.
   [[nodiscard]] std::optional<double> look(double time, const Signals& signals, const Kept& kept);
   /// Behind `look` at a time [s] at which readings have come: whether the next phase begins by them, now.
   [[nodiscard]] bool read(double time, const Kept& kept);

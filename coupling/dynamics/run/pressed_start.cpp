@@ -22,8 +22,8 @@ double reach_of(const Matrix3Xd& wire, const RoundWall& wall) {
   return (wire.colwise() - wall.centre).topRows<2>().colwise().norm().maxCoeff();
 }
 
-/// Vertices on a circle through both ends, their edges as long as the wire's: half the angle of n edges of length L/n whose ends are a span
-/// apart,  sin(a)/(n sin(a/n)) = span/L.
+/// Vertices on a circle through both ends, their edges as long as the wire's: half the angle of n edges of
+/// length L/n whose ends are a span apart,  sin(a)/(n sin(a/n)) = span/L.
 Matrix3Xd arc_between(double span, double length, int n) {
   double low = 0.0, high = std::numbers::pi;
   for (int k = 0; k < 100; ++k) {

@@ -25,7 +25,7 @@ using numerics::DaePoint;
 
 namespace {
 
-// Of the tolerances, that Newton's method may leave at a step.                                       theory.md (M.12)
+// Of the tolerances, that Newton's method may leave at a step.                               theory.md (M.12)
 constexpr double share_of_rods = 2e-4;
 constexpr double share_of_bodies = 1e-3;  // and of wires without waves
 // Without waves Newton's method forgives a matrix of another step: fewer matrices, hardly more iterations.
@@ -129,8 +129,8 @@ int MotionRun::default_order() const {
   return interactions_.empty() ? of_bodies : of_laws;
 }
 
-// A wire that is inside a shape has no side to which it belongs. Balls of bodies may rest on a shape, but what is pressed
-// into it is thrown out.
+// A wire that is inside a shape has no side to which it belongs. Balls of bodies may rest on a shape, but
+// what is pressed into it is thrown out.
 void MotionRun::require_apart() {
   std::vector<base::InputProblem> problems;
   for (const auto& i : interactions_) {
@@ -139,7 +139,7 @@ void MotionRun::require_apart() {
   if (!problems.empty()) throw base::InputError(problems);
 }
 
-// What would leave the plane of a motion that is its own mirror image stays as it is.                 theory.md (M.36)
+// What would leave the plane of a motion that is its own mirror image stays as it is.        theory.md (M.36)
 void MotionRun::stay_in_plane() {
   const std::optional<int> normal = symmetry_normal(motion_);
   if (!normal) return;
@@ -237,7 +237,8 @@ bool MotionRun::write_until(double time) {
   return false;
 }
 
-// No rate of a loss is negative; above second order the integrator's sum of them may yet fall, within its tolerance.
+// No rate of a loss is negative; above second order the integrator's sum of them may yet fall, within its
+// tolerance.
 void MotionRun::count_losses() {
   const double others = integrals_[integral::laws] + constraints_->lost(y_);
   const double sum = integrals_[integral::dissipated] + others;
@@ -288,8 +289,8 @@ void MotionRun::resume(const MotionState& from) {
   ida_->start(time_, y_, rate_);
 }
 
-// Two times at which something changes that differ by round-off: 0.1 + 0.2 beside 0.3. The integrator cannot step from one to the
-// other.
+// Two times at which something changes that differ by round-off: 0.1 + 0.2 beside 0.3. The integrator cannot
+// step from one to the other.
 void MotionRun::cross_break(double time) {
   time_ = time;
   static_cast<void>(constraints_->process_events({time_, y_, rate_}, {}, y_));

@@ -45,9 +45,11 @@ namespace snare::coupling {
 class MotionRun {
  public:
   MotionRun(const Motion& motion, const MotionOptions& options, const MotionObserver& observer);
-  /// Finds what touches at the start, books energy and momentum there, makes the rates consistent; once, in place of `resume`.
+  /// Finds what touches at the start, books energy and momentum there, makes the rates consistent; once, in
+  /// place of `resume`.
   void begin();
-  /// Goes on from a state that a leg of the same motion has left. Throws base::InputError when the sizes are not of this motion.
+  /// Goes on from a state that a leg of the same motion has left. Throws base::InputError when the sizes are
+  /// not of this motion.
   void resume(const MotionState& from);
   /// Goes on to `limit` [s].
   MotionResult run_until(double limit);
@@ -63,8 +65,8 @@ class MotionRun {
   void stay_in_plane();
   void leave_plane();
   [[nodiscard]] bool write_until(double time);
-  /// Gives a sample to the observer; true: the run ends. One with a number that is none is not given and ends the run; the first one
-  /// throws base::InputError.
+  /// Gives a sample to the observer; true: the run ends. One with a number that is none is not given and ends
+  /// the run; the first one throws base::InputError.
   [[nodiscard]] bool emit(const MotionSample& sample);
   void cross_break(double time);
   [[nodiscard]] MotionResult result(numerics::IdaReport report);
@@ -107,12 +109,14 @@ class MotionRun {
   struct Crossed {
     bool any = false, jump = false;  // a jump needs a restart
   };
-  /// Books touches, lift-offs, and what else the interactions tell of the step from a time [s]. found: events of the integrator.
+  /// Books touches, lift-offs, and what else the interactions tell of the step from a time [s]. found: events
+  /// of the integrator.
   Crossed cross_events(double time_before, std::span<const int> found);
   /// The first time, up to a limit, at which what acts has a break that is known ahead [s].
   [[nodiscard]] double next_break(double limit) const;
   [[nodiscard]] double longest_step() const;
-  /// Tells the robots' loops what presses on their bodies, in the step from a time [s] on or, without one, now.
+  /// Tells the robots' loops what presses on their bodies, in the step from a time [s] on or, without one,
+  /// now.
   void sense_forces(double from);
   /// At the last state, or within the step before it.
   [[nodiscard]] MotionSample sample(const numerics::DaePoint& at, const Eigen::VectorXd& integrals);

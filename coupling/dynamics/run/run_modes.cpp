@@ -30,7 +30,8 @@ constexpr double slowest = 1e-3;  // [rad/s]: below it are the coordinates that 
 constexpr double smallest_share = 0.01;
 constexpr double trusted = 1e-6;  // of the largest term that an equation could have: what may be left of it
 
-/// Twice the kinetic energy of rates about a pose, by joint with its motor; what moves no elastic joint is the base.
+/// Twice the kinetic energy of rates about a pose, by joint with its motor; what moves no elastic joint is
+/// the base.
 void add_arm(const MotionArm& one, const VectorXd& q, const multibody::ArmState& rates,
              std::map<std::string, double>& energy) {
   const multibody::ElasticArm& arm = one.arm;
@@ -49,14 +50,16 @@ void add_arm(const MotionArm& one, const VectorXd& q, const multibody::ArmState&
 
 namespace {
 
-/// A x + B x' = 0 with one pattern, columns scaled by the tolerances, the sizes at which unknowns of different units are alike.
+/// A x + B x' = 0 with one pattern, columns scaled by the tolerances, the sizes at which unknowns of
+/// different units are alike.
 struct Pencil {
   numerics::SparseMatrix A, B;
 };
 
 constexpr double shift = 0.9173;  // [1/s]: no eigenvalue of note
 
-/// Eigenvalues mu of (A + s B)^-1 B with their vectors: all of them, or of a large pencil those of the slowest motions.
+/// Eigenvalues mu of (A + s B)^-1 B with their vectors: all of them, or of a large pencil those of the
+/// slowest motions.
 numerics::GeneralEigen shifted_eigenvalues(const Pencil& pencil) {
   numerics::SparseMatrix shifted = pencil.A, B = pencil.B;
   for (std::size_t k = 0; k < B.value.size(); ++k) shifted.value[k] += shift * B.value[k];
@@ -82,8 +85,8 @@ numerics::GeneralEigen shifted_eigenvalues(const Pencil& pencil) {
 
 }  // namespace
 
-// F(y + x, y' + x') = 0 to first order: A x + B x' = 0. With M = (A + s B)^-1 B and M x = mu x it is lambda = s - 1/mu; what no rate acts on has
-// mu = 0.
+// F(y + x, y' + x') = 0 to first order: A x + B x' = 0. With M = (A + s B)^-1 B and M x = mu x it is lambda =
+// s - 1/mu; what no rate acts on has mu = 0.
 SmallMotions MotionRun::small_motions() {
   // Of the rates in the second matrix [1/s]: lifts them out of the round-off of the first.
   constexpr double weight = 1e3;
@@ -162,7 +165,8 @@ ModeShape MotionRun::shape_of(const VectorXcd& x) {
   return shape;
 }
 
-// The kinetic energy is quadratic in the velocities: of an oscillation the sum of those of the real and of the imaginary part.
+// The kinetic energy is quadratic in the velocities: of an oscillation the sum of those of the real and of
+// the imaginary part.
 std::vector<std::pair<std::string, double>> MotionRun::shares_of(const VectorXcd& x) {
   std::map<std::string, double> energy;
   constexpr std::array<const char*, 3> axes{"x", "y", "z"};

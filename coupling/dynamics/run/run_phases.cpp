@@ -64,7 +64,8 @@ void MotionRun::sense() {
     sensed_.cross_break(time_, [this] { return sample({time_, y_, rate_}, integrals_); });
 }
 
-// The integrator has gone on behind the beginning of the phase: its polynomial gives the state there. It has not gone on behind a reading.
+// The integrator has gone on behind the beginning of the phase: its polynomial gives the state there. It has
+// not gone on behind a reading.
 bool MotionRun::look_for_phase() {
   const std::optional<double> begins = phases_.look(time_, signals(), kept());
   if (begins && *begins < time_) {

@@ -13,7 +13,7 @@
 
 namespace snare::coupling {
 
-/// The readings of the sensed signals of a motion, as they come while it runs.                         theory.md (M.23)
+/// The readings of the sensed signals of a motion, as they come while it runs.               theory.md (M.23)
 class SensedReadings {
  public:
   /// Gives the sample at the present time.
@@ -24,7 +24,8 @@ class SensedReadings {
 
   /// Whether nothing is sensed.
   [[nodiscard]] bool empty() const { return signals_.empty(); }
-  /// The first time behind a time at which something is seen or read, at which the integration must stop [s]; infinite: none.
+  /// The first time behind a time at which something is seen or read, at which the integration must stop [s];
+  /// infinite: none.
   [[nodiscard]] double limit(double time) const;
   /// The integration stands at a time [s]: what is seen or read there.
   void cross_break(double time, const Sampler& sample);
@@ -46,7 +47,8 @@ class SensedReadings {
     std::deque<Eigen::Vector3d> waiting;   // readings seen that have not come
     Eigen::Vector3d last = Eigen::Vector3d::Zero();
   };
-  /// The output time that a reading tells, or the first of two, as a number of intervals, and the share of the second.
+  /// The output time that a reading tells, or the first of two, as a number of intervals, and the share of
+  /// the second.
   struct Told {
     long output = 0;
     double share = 0.0;

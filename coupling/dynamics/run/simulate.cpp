@@ -30,8 +30,8 @@ MotionResult simulate(const Motion& motion, const MotionOptions& options, const 
   require_valid(motion, options);
   std::optional<MotionState> state;
   if (from != nullptr) state = *from;
-  // Every leg between two checkpoints is a run of its own that knows the state alone: whether the legs are those of one
-  // process or of several makes no difference.
+  // Every leg between two checkpoints is a run of its own that knows the state alone: whether the legs are
+  // those of one process or of several makes no difference.
   for (;;) {
     MotionRun run(motion, options, observer);
     if (state) {

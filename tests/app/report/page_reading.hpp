@@ -23,7 +23,8 @@ inline std::string own_part(const std::string& html) {
   return html.substr(0, html.find("</footer>"));
 }
 
-/// What the browser reads from the first plot of this title after the first occurrence of `section`; null without one.
+/// What the browser reads from the first plot of this title after the first occurrence of `section`; null
+/// without one.
 inline nlohmann::json plot_of(const std::string& html, const std::string& title,
                               const std::string& section = "") {
   const std::size_t begin = html.find(section);

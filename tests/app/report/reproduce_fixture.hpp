@@ -26,8 +26,9 @@ inline identification::Prediction computed_curve(const std::vector<double>& forc
   return p;
 }
 
-/// One position. Published is F = 1 N/mm d up to 2 mm, with a scatter of 0.1 N: R^2 = 1/1.03, variance of the law 1/3 N^2.
-/// Off by 0, 50 and 100 N: the declared model, rms 64.5 N. Off by 0.2 N throughout: the fitted one.
+/// One position. Published is F = 1 N/mm d up to 2 mm, with a scatter of 0.1 N: R^2 = 1/1.03, variance of the
+/// law 1/3 N^2. Off by 0, 50 and 100 N: the declared model, rms 64.5 N. Off by 0.2 N throughout: the fitted
+/// one.
 inline Reproduction reproduction() {
   Reproduction result;
   result.experiment.title = "Static push";

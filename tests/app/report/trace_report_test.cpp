@@ -107,8 +107,9 @@ TEST(TraceReport, ShowsTheParametersAndTests) {
   EXPECT_TRUE(contains(html, "What the base model leaves is more than noise."));
 }
 
-// Law minus model at 0, 1, 2 mm: base 0.0533, -0.0404, 0.2057, rms 0.125; final 0.0533, 0.0596, 0.1057, rms 0.0765.
-// Scatter of that law over 3 mm: sqrt(0.0024 / 0.9976 (4 p^2/45 + p q/6 + q^2/12)) = 0.0942, p = 6.479, q = -0.0407.
+// Law minus model at 0, 1, 2 mm: base 0.0533, -0.0404, 0.2057, rms 0.125; final 0.0533, 0.0596, 0.1057, rms
+// 0.0765. Scatter of that law over 3 mm: sqrt(0.0024 / 0.9976 (4 p^2/45 + p q/6 + q^2/12)) = 0.0942, p =
+// 6.479, q = -0.0407.
 TEST(TraceReport, TellsWhereThePusherStood) {
   Trace trace = explained_trace();
   EXPECT_FALSE(contains(page_of(trace), "Where the pusher stood"));

@@ -42,7 +42,8 @@ TEST(ContactLaw, NeverPullsAndIsZeroApart) {
   EXPECT_EQ(power_law(1e3, 1.5, 1e6, 1.0)(1.0 * mm, -1.0), Eigen::Vector3d::Zero());
 }
 
-// The spring's force is the slope of its energy, and the damping never gives power, also where the force is cut off.
+// The spring's force is the slope of its energy, and the damping never gives power, also where the force is
+// cut off.
 TEST(ContactLaw, StoresItsSpringAndLosesTheRest) {
   for (const ContactLaw& law :
        {spring_dashpot(3e3, 50.0), power_law(2e4, 1.5, 4e4, 1.0), power_law(2e4, 2.6, 40.0, 1.3, 0.0),
@@ -64,7 +65,8 @@ TEST(ContactLaw, StoresItsSpringAndLosesTheRest) {
   }
 }
 
-// Honda et al. 2014: l = 90, L = 87.5 mm, K = 5.55e5 N/m gives 60810 N/m; exact over linear 1.068 at 1 mm, 1.74 at 10 mm.
+// Honda et al. 2014: l = 90, L = 87.5 mm, K = 5.55e5 N/m gives 60810 N/m; exact over linear 1.068 at 1 mm,
+// 1.74 at 10 mm.
 TEST(ContactLaw, StretchedWireOfHonda) {
   const double k = 5.55e5;
   const ContactLaw exact = stretched_wire_law(k, 90 * mm, 87.5 * mm);

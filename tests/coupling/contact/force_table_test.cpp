@@ -9,8 +9,8 @@
 namespace snare::coupling {
 namespace {
 
-// Of a function that is cubic along every axis the table is exact, slopes too; its mirror image answers beyond
-// mid-span.
+// Of a function that is cubic along every axis the table is exact, slopes too; its mirror image answers
+// beyond mid-span.
 TEST(ForceTable, IsExactForCubicsAndMirrors) {
   const ForceTable::Axes axes{{{0.0, 0.01, 0.02, 0.03}, {0.2, 0.3, 0.35, 0.5}, {0.001, 0.002, 0.004, 0.005}}};
   const auto f = [](double d, double s, double e) {
@@ -50,7 +50,8 @@ TEST(ForceTable, IsExactForCubicsAndMirrors) {
                std::domain_error);
 }
 
-/// A loose wire's force in shape: stiffer towards the mount and with less slack, so steeply that tangents beyond the range become negative.
+/// A loose wire's force in shape: stiffer towards the mount and with less slack, so steeply that tangents
+/// beyond the range become negative.
 /// softening: falls at the end of the travel.
 ForceTable steep_table(bool mirrored, double softening = 0.0) {
   const ForceTable::Axes axes{
@@ -68,8 +69,9 @@ ForceTable steep_table(bool mirrored, double softening = 0.0) {
   return {axes, values, slopes, 1.0, 1.0, mirrored};
 }
 
-// Outside the range a force is never negative and never falls along the travel, and the stiffness that is stated is its slope, however far
-// the point is; inside nothing changes. For rising and softening tables, with mirror image and without.
+// Outside the range a force is never negative and never falls along the travel, and the stiffness that is
+// stated is its slope, however far the point is; inside nothing changes. For rising and softening tables,
+// with mirror image and without.
 TEST(ForceTable, ContinuationNeitherAttractsNorFalls) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> travel(0.0, 0.5), position(-0.3, 1.3), slack(-0.01, 0.02);
@@ -88,7 +90,8 @@ TEST(ForceTable, ContinuationNeitherAttractsNorFalls) {
       const double high = table.at(d + h, s, e, Outside::extrapolate).force;
       EXPECT_GE(high, low - 1e-13 * (1.0 + low));  // round-off
       raised += here.stiffness == 0.0 ? 1 : 0;
-      // Central differences of pieces that are cubic at most: h^2, round-off over h; a knot between the points changes the curvature.
+      // Central differences of pieces that are cubic at most: h^2, round-off over h; a knot between the
+      // points changes the curvature.
       EXPECT_NEAR(here.stiffness, (high - low) / (2.0 * h), 1e-4 * (1.0 + here.stiffness));
       EXPECT_THROW(static_cast<void>(table.at(d, s, e, Outside::refuse)), std::domain_error);
     }
@@ -96,7 +99,8 @@ TEST(ForceTable, ContinuationNeitherAttractsNorFalls) {
   }
 }
 
-// Where the tangent itself rises the continuation is the tangent, and it meets the table at the edge of the range.
+// Where the tangent itself rises the continuation is the tangent, and it meets the table at the edge of the
+// range.
 TEST(ForceTable, ContinuationIsLinearAndContinuous) {
   const ForceTable table = steep_table(true);
   constexpr double h = 1e-6;
@@ -104,7 +108,8 @@ TEST(ForceTable, ContinuationIsLinearAndContinuous) {
     return table.at(d, s, e, Outside::extrapolate).force;
   };
   for (const double d : {0.001, 0.007, 0.02}) {
-    // Differences inside, at the edge, of second order: h^2 times third derivatives of some 1e3 times the force.
+    // Differences inside, at the edge, of second order: h^2 times third derivatives of some 1e3 times the
+    // force.
     const double f = force(d, 0.2, 0.003);
     const double by_s =
         (-3.0 * f + 4.0 * force(d, 0.2 + h, 0.003) - force(d, 0.2 + 2.0 * h, 0.003)) / (2.0 * h);

@@ -206,7 +206,8 @@ TEST(MeshShapes, TessellatedShaftIsTheShaftWithinItsTessellation) {
     const double exact = shaft->distance(p);
     const double d = mesh.distance(p);
     EXPECT_GE(d, exact - 1e-12) << p.transpose();
-    // Deep inside the medial axis the nearest foot may be another: still the distance to nearly the same surface.
+    // Deep inside the medial axis the nearest foot may be another: still the distance to nearly the same
+    // surface.
     EXPECT_LE(d, exact + 1.5 * sagitta) << p.transpose();
     EXPECT_EQ(mesh.contains(p), d < 0.0) << p.transpose();
     inside += d < 0.0 ? 1 : 0;

@@ -14,8 +14,8 @@ RangedLaw quadratic(double a, double b, double c, double end) {
   return {quadratic_law()->with(Eigen::Vector3d(a, b, c)), end};
 }
 
-// Never negative, linear beyond the end and never falling there; the energy is the integral of the force. Quadratics that begin below 0, dip
-// below 0, or fall at the end.
+// Never negative, linear beyond the end and never falling there; the energy is the integral of the force.
+// Quadratics that begin below 0, dip below 0, or fall at the end.
 TEST(RangedLaw, IsNeverNegativeAndLinearBeyondItsTravel) {
   for (const auto& [a, b, c] : std::vector<std::array<double, 3>>{{5e5, 1e3, -1.0},
                                                                   {5e5, -1e3, 0.3},

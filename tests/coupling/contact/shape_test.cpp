@@ -26,7 +26,8 @@ using Shape = std::shared_ptr<const ContactShape>;
 
 constexpr double pi = std::numbers::pi;
 
-/// A shape with what is known of it by other means: points on its surface at most `spacing` apart, and what is inside.
+/// A shape with what is known of it by other means: points on its surface at most `spacing` apart, and what
+/// is inside.
 struct Sampled {
   std::string name;
   Shape shape;
@@ -35,7 +36,8 @@ struct Sampled {
   std::function<bool(const Vector3d&)> inside;
 };
 
-/// Turns a chain of points (distance from the axis, height) about the axis, both ways at most `spacing` apart.
+/// Turns a chain of points (distance from the axis, height) about the axis, both ways at most `spacing`
+/// apart.
 std::vector<Vector3d> revolve(const std::vector<Vector2d>& chain, double spacing) {
   std::vector<Vector3d> points;
   for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
@@ -242,7 +244,8 @@ TEST(ContactShapes, TurnAboutTheirAxisWithoutChange) {
 }
 
 TEST(ContactShapes, AreOnceDifferentiableAcrossARim) {
-  // Round the rim of a cylinder at the wire's radius: no jump of distance or normal, curvature 1/radius at the rim.
+  // Round the rim of a cylinder at the wire's radius: no jump of distance or normal, curvature 1/radius at
+  // the rim.
   const Shape cylinder = finite_cylinder(0.5, 1.0);
   constexpr double radius = 0.05;
   const Vector3d rim(0.5, 0.0, 0.5);

@@ -199,7 +199,8 @@ TEST(MotionState, GoingOnFromACheckpointGivesTheSameBits) {
   EXPECT_EQ(states[1].time, 0.024);
 }
 
-// Times that differ by less than 1e-13 s are the same: a leg between two checkpoints must be longer, or none ever ends.
+// Times that differ by less than 1e-13 s are the same: a leg between two checkpoints must be longer, or none
+// ever ends.
 TEST(MotionState, LegsAreLongerThanRoundOff) {
   const Motion motion = oblique_impact(soft_rod(End::clamp, End::pin));
   MotionOptions options;

@@ -85,7 +85,8 @@ TEST(BodyContact, LinearLawRestitution) {
   EXPECT_LT(b.result.momentum_error.norm(), 1e-8);
 }
 
-// Hunt and Crossley: m v dv = -(k + c v) x^p dx, so that v/c - k/c^2 ln(k + c v) is the same before and after.
+// Hunt and Crossley: m v dv = -(k + c v) x^p dx, so that v/c - k/c^2 ln(k + c v) is the same before and
+// after.
 TEST(BodyContact, HuntCrossleyRestitution) {
   constexpr double k = 5e6, p = 1.5, c = 4e7, v = 0.1;
   const Bounce b = bounce(ball_on_plane(power_law(k, p, c, 1.0)), 0.06);
@@ -99,7 +100,8 @@ TEST(BodyContact, HuntCrossleyRestitution) {
   EXPECT_NEAR(b.speed / low, 1.0, 1e-3) << low;
 }
 
-// A ball that slides into a plane is slowed by Coulomb's force and begins to roll: mu N in all, as long as it slides.
+// A ball that slides into a plane is slowed by Coulomb's force and begins to roll: mu N in all, as long as it
+// slides.
 TEST(BodyContact, FrictionTakesMuTimesTheImpulse) {
   Motion motion = ball_on_plane(spring_dashpot(2e4, 0.0));
   motion.bodies[0].start.velocity.x() = 1.0;
@@ -134,8 +136,8 @@ TEST(BodyContact, ABallMayRestButNotBeginInside) {
               testing::HasSubstr("contact.gap = -0.006 m, must be >= -0.005 m at the start"));
 }
 
-/// A block of 1 kg on four feet that carry it, on a plane of the world at the height of its centre, so that friction does not tip it; the
-/// weight is tilted in place of the plane.
+/// A block of 1 kg on four feet that carry it, on a plane of the world at the height of its centre, so that
+/// friction does not tip it; the weight is tilted in place of the plane.
 Motion block_on_ramp(double angle, double friction, ContactFriction law = ContactFriction::stick_slip) {
   Motion motion;
   motion.bodies = {block("block", 1.0, {2e-3, 2e-3, 2e-3})};
@@ -178,9 +180,9 @@ OnRamp on_ramp(const Motion& motion, double duration) {
   return r;
 }
 
-// Below the limit, tan(angle) < mu, a block rests. Let go with straight bristles it swings on them; where tan(angle) > mu/2 it slides
-// at first, with v^2 = g z_m (2 sin - mu cos) from the end z_m of the bristles on, for v^2/(2 g (mu cos - sin)). Beyond the limit it
-// slides at g (sin - mu cos).
+// Below the limit, tan(angle) < mu, a block rests. Let go with straight bristles it swings on them; where
+// tan(angle) > mu/2 it slides at first, with v^2 = g z_m (2 sin - mu cos) from the end z_m of the bristles
+// on, for v^2/(2 g (mu cos - sin)). Beyond the limit it slides at g (sin - mu cos).
 TEST(BodyContact, ABlockRestsOnARampOrSlidesByCoulombsLaw) {
   constexpr double degree = M_PI / 180.0, g = 9.81;
   for (const auto& [angle, friction] : {std::pair{10.0, 0.5}, {26.0, 0.5}, {10.0, 0.2}, {20.0, 0.4}}) {
@@ -195,7 +197,8 @@ TEST(BodyContact, ABlockRestsOnARampOrSlidesByCoulombsLaw) {
     EXPECT_LT(
         r.place,
         1.02 * (give + way));  // damping of the bristles shortens it; coordinates err by 1e-7 m and less
-    // The swing decays as exp(-tau g mu/(2 z_m) t), 10/s at 0.2, from 1 mm/s: after a second it is below the tolerance of velocities.
+    // The swing decays as exp(-tau g mu/(2 z_m) t), 10/s at 0.2, from 1 mm/s: after a second it is below the
+    // tolerance of velocities.
     EXPECT_LT(r.late_speed, 1e-6);
     EXPECT_FALSE(r.falls);
     ASSERT_FALSE(r.result.events.empty());
@@ -216,7 +219,8 @@ TEST(BodyContact, ABlockRestsOnARampOrSlidesByCoulombsLaw) {
   }
 }
 
-// A block that is thrown along a level plane stops after v^2/(2 mu g) and says when it sticks; by the smooth law it would creep on.
+// A block that is thrown along a level plane stops after v^2/(2 mu g) and says when it sticks; by the smooth
+// law it would creep on.
 TEST(BodyContact, AThrownBlockSlidesAndSticks) {
   Motion motion = block_on_ramp(0.0, 0.4);
   motion.bodies[0].start.velocity.x() = 0.3;
@@ -278,7 +282,8 @@ TEST(BodyContact, JacobianMatchesDifferences) {
   }
 }
 
-// A thruster in a body's axes turns with it: a body that spins at w gets F/(m w) (sin w t, 1 - cos w t). Pulses add up.
+// A thruster in a body's axes turns with it: a body that spins at w gets F/(m w) (sin w t, 1 - cos w t).
+// Pulses add up.
 TEST(FrameLoad, ThrusterTurnsWithItsBody) {
   Motion motion;
   motion.bodies = {block("visitor", 2.0, {0.3, 0.3, 0.3})};
@@ -306,7 +311,8 @@ TEST(FrameLoad, ThrusterTurnsWithItsBody) {
   EXPECT_LT(r.momentum_error.norm(), 1e-7);
 }
 
-// A half sine has 2/pi of its peak times its time; the way at its end is half that of the whole impulse from its beginning.
+// A half sine has 2/pi of its peak times its time; the way at its end is half that of the whole impulse from
+// its beginning.
 TEST(FrameLoad, HalfSinesHaveTheirArea) {
   Motion motion;
   motion.bodies = {block("visitor", 2.0, {0.3, 0.3, 0.3})};

@@ -74,8 +74,8 @@ std::vector<double> upward_zeros(const Motion& motion, const MotionOptions& opti
   return zeros;
 }
 
-// On a clamped fixture a body swings about the axis of the bushing at sqrt(K/I); two free ones towards each other at
-// sqrt(k (1/m + 1/m')).
+// On a clamped fixture a body swings about the axis of the bushing at sqrt(K/I); two free ones towards each
+// other at sqrt(k (1/m + 1/m')).
 TEST(Bushing, FrequenciesAreThoseOfTheClosedForm) {
   Motion clamped;
   clamped.bodies = {block("visitor", 3.0, {0.3, 0.4, 0.5})};
@@ -98,7 +98,8 @@ TEST(Bushing, FrequenciesAreThoseOfTheClosedForm) {
   EXPECT_NEAR(sway, 2.0 * std::numbers::pi / std::sqrt(3000.0 * (1.0 / 3.0 + 1.0 / 5.0)), 1e-5 * sway);
 }
 
-// Turns of more than a radian about changing axes: the moment is that of the energy, and what one feels the other does.
+// Turns of more than a radian about changing axes: the moment is that of the energy, and what one feels the
+// other does.
 TEST(Bushing, KeepsEnergyAndMomentumInLargeTurns) {
   Motion motion;
   motion.bodies = {block("one", 3.0, {0.3, 0.4, 0.5}), block("other", 5.0, {0.6, 0.5, 0.7})};
@@ -119,8 +120,8 @@ TEST(Bushing, KeepsEnergyAndMomentumInLargeTurns) {
   EXPECT_LT(result.angular_momentum_error.norm(), 1e-7);
 }
 
-// Damping ratio zeta = c/(2 sqrt(k m)): the swing falls by exp(-2 pi zeta/sqrt(1 - zeta^2)) a period; what is lost is counted,
-// also against a world that gives forces.
+// Damping ratio zeta = c/(2 sqrt(k m)): the swing falls by exp(-2 pi zeta/sqrt(1 - zeta^2)) a period; what is
+// lost is counted, also against a world that gives forces.
 TEST(Bushing, DampsAsTheClosedForm) {
   Motion motion;
   motion.bodies = {block("visitor", 3.0, {0.3, 0.4, 0.5})};

@@ -1,4 +1,5 @@
-// Wires start with the motion of their carriers: forces at the start and everything after it depend on relative motion alone.
+// Wires start with the motion of their carriers: forces at the start and everything after it depend on
+// relative motion alone.
 
 #include "coupling/dynamics/model/start.hpp"
 #include "coupling/dynamics/run/simulate.hpp"
@@ -50,7 +51,8 @@ std::vector<Vector3d> start_forces(const Motion& motion) {
   return forces;
 }
 
-/// A bent wire between two bodies, or with both ends on one, with mounts of every kind; the bodies move and turn.
+/// A bent wire between two bodies, or with both ends on one, with mounts of every kind; the bodies move and
+/// turn.
 Motion random_scene(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   const auto vector = [&]() -> Vector3d { return {unit(random), unit(random), unit(random)}; };
@@ -119,8 +121,9 @@ TEST(CarriedStart, IsGalileiInvariant) {
   }
 }
 
-// A rotation that is superposed on all bodies is none of the wire in itself: no dashpot answers. At the start a light wire, of 0.2 mg, has forces of
-// stiffness and damping alone; its inertia adds some 1e-9 N to tenths of newtons.
+// A rotation that is superposed on all bodies is none of the wire in itself: no dashpot answers. At the start
+// a light wire, of 0.2 mg, has forces of stiffness and damping alone; its inertia adds some 1e-9 N to tenths
+// of newtons.
 TEST(CarriedStart, FeelsNoSuperposedRotation) {
   std::mt19937 random(43);
   for (int trial = 0; trial < 40; ++trial) {

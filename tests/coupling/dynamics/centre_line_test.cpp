@@ -80,7 +80,8 @@ TEST(CentreLine, BendsAWireWithoutTwist) {
     part.place(w.positions, w.velocities, y);
     Eigen::VectorXd rows(system.size());
     system.residual({0.0, y, rate}, rows);
-    // Chords bend without regard to twist, but for round-off; curvatures as unknowns turn a little against the chords beside a clamp.
+    // Chords bend without regard to twist, but for round-off; curvatures as unknowns turn a little against
+    // the chords beside a clamp.
     const double allowed = formulation == wire::Formulation::vertices ? 1e-12 : 1e-3 * moment;  // N m
     for (int e = 0; e + 1 < part.vertices(); ++e) EXPECT_LT(std::abs(rows[part.angle_of(e)]), allowed);
     const wire::RodPart::SectionLoads loads = part.section_loads({0.0, y, rate});
@@ -93,7 +94,8 @@ TEST(CentreLine, BendsAWireWithoutTwist) {
 // Four points a circle: the spline is far from the circle, and yet the wire is evenly stretched along it.
 TEST(CentreLine, IsEvenlyStretchedHoweverFewItsPoints) {
   const CentreLine line = line_through(helix_points(5, 2.0 * pi));
-  // The curvature jumps at the points, where pieces of 90 degrees in 64 parts turn by 0.025 a part: some 1/20 of the square.
+  // The curvature jumps at the points, where pieces of 90 degrees in 64 parts turn by 0.025 a part: some 1/20
+  // of the square.
   for (int i = 0; i <= 100; ++i) EXPECT_LT(std::abs(line.stretch(0.01 * i * line.length())), 3e-5);
 }
 

@@ -52,7 +52,8 @@ struct Quartic {
 
 }  // namespace
 
-// What is closed is what a look at very many places shows: every stretch, however it lies to the ends of the pieces.
+// What is closed is what a look at very many places shows: every stretch, however it lies to the ends of the
+// pieces.
 TEST(ContactIntervals, NothingIsHiddenAndNothingOpenIsTaken) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> even(-1.0, 1.0);
@@ -102,8 +103,8 @@ TEST(ContactIntervals, WhatIsNoNumberEndsTheSearch) {
   }
 }
 
-// Dips side by side with a maximum between them, here above zero, that passes the beginning of the element: what is closed there
-// goes on from state to state though the slope at the beginning changes its sign.
+// Dips side by side with a maximum between them, here above zero, that passes the beginning of the element:
+// what is closed there goes on from state to state though the slope at the beginning changes its sign.
 TEST(ContactIntervals, NoStepWhereAMaximumPassesAVertex) {
   constexpr double wave = 0.06, height = 2e-7, rise = 1e-4;
   constexpr double rate = 2.0 * std::numbers::pi / wave;
@@ -131,7 +132,8 @@ TEST(ContactIntervals, NoStepWhereAMaximumPassesAVertex) {
 
 namespace {
 
-/// g = h (cos^2(pi x/2) + tilt x - level), x from -1.5 to 1.5 along the element: lobes at -1 and 1 with a crest between them.
+/// g = h (cos^2(pi x/2) + tilt x - level), x from -1.5 to 1.5 along the element: lobes at -1 and 1 with a
+/// crest between them.
 struct TwoLobes {
   double tilt = 0.0, level = 0.0;  // of h
   static constexpr double height = 1e-6, ends = 1.5;
@@ -172,7 +174,8 @@ struct TwoLobes {
 
 }  // namespace
 
-// A stretch parts where its crest comes out, and a crest rises from what was one lobe: no load jumps, and loads stay right.
+// A stretch parts where its crest comes out, and a crest rises from what was one lobe: no load jumps, and
+// loads stay right.
 TEST(ContactIntervals, LoadsDoNotJumpWhereAStretchPartsOrACrestRises) {
   constexpr double step = 1e-4;
   const auto follow = [&](TwoLobes lobes, double TwoLobes::*what, double to) {

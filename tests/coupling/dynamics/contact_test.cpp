@@ -36,7 +36,8 @@ Matrix3d along_the_wire() {
   return AngleAxisd(0.5 * pi, Vector3d::UnitY()).toRotationMatrix();
 }
 
-// A wire in waves that dips into a long capsule below it more than once: nearest point and force against dense sampling.
+// A wire in waves that dips into a long capsule below it more than once: nearest point and force against
+// dense sampling.
 TEST(ContactPart, NearestPointAndForceAreThoseOfASampledWire) {
   wire::RodInMotion constants = soft_wire(12);
   constants.grading = 1.0;
@@ -88,7 +89,7 @@ TEST(ContactPart, NearestPointAndForceAreThoseOfASampledWire) {
   EXPECT_LT((part.sums(y).force - force).norm(), 0.02 * force.norm());
 }
 
-// A wire that crosses a rounded edge meets F = 4/3 k sqrt(2/c) d^(3/2), c = 1/(R + r).                  theory.md (M.8)
+// A wire that crosses a rounded edge meets F = 4/3 k sqrt(2/c) d^(3/2), c = 1/(R + r).        theory.md (M.8)
 TEST(ContactPart, AStraightWireAcrossAPinMeetsTheForceOfItsDepth) {
   constexpr double radius = 0.006, wire_radius = 0.001;
   for (const double depth : {1e-8, 1e-7, 1e-6}) {
@@ -128,8 +129,9 @@ MotionResult impact(std::shared_ptr<const ContactShape> shape, const Matrix3d& t
 TEST(MotionOfMeshes, StrikeLikeTheSolidsTheyTessellate) {
   constexpr double radius = 0.01;
   constexpr int around = 36;
-  // Chords stand inside by up to the sagitta, 4e-5 m of a push of some 1e-2 m; an edge between facets meets the wire at up to pi/36 from
-  // where the cylinder would, which turns the force by so much and shortens its part along the push by half the square, 0.4 %.
+  // Chords stand inside by up to the sagitta, 4e-5 m of a push of some 1e-2 m; an edge between facets meets
+  // the wire at up to pi/36 from where the cylinder would, which turns the force by so much and shortens its
+  // part along the push by half the square, 0.4 %.
   constexpr double share = 0.01;
   const MotionResult cylinder = impact(finite_cylinder(radius, 0.04), Matrix3d::Identity(), radius);
   const MotionResult cylinder_mesh =

@@ -1,4 +1,5 @@
-// Every law stores or dissipates the power that it takes from bodies and wires; the dissipation is never negative, in any state.
+// Every law stores or dissipates the power that it takes from bodies and wires; the dissipation is never
+// negative, in any state.
 
 #include "coupling/contact/revolved_solids.hpp"
 #include "coupling/dynamics/contact/body_contact_part.hpp"
@@ -152,7 +153,8 @@ TEST(Dissipation, OfAWireOnABody) {
                 [&](const VectorXd& at) { return part.sums(at).energy; },
                 [&](const VectorXd& at) { return part.sums(at).lost_power; },
                 [&](const VectorXd& at, VectorXd& rate) { part.set_bristle_rates(at, rate); }};
-    // Gauss's rule on a stretch that moves is not the derivative of the rule: to some 1e-3 where edges are sharp.
+    // Gauss's rule on a stretch that moves is not the derivative of the rule: to some 1e-3 where edges are
+    // sharp.
     losing += scene.expect_balanced(y, 5e-3, 1e-10) ? 1 : 0;
   }
   EXPECT_GT(losing, 100);  // of 240 states; in the others nothing touches between the mounts, or all lets go

@@ -20,7 +20,8 @@ using Eigen::Vector3d;
 using test::body_below;
 using test::soft_wire;
 
-/// A block of 0.2 kg, 40 mm along the wire, that moves up at 0.05 m/s; its top is 1 mm (the wire's radius) and `gap` below the wire.
+/// A block of 0.2 kg, 40 mm along the wire, that moves up at 0.05 m/s; its top is 1 mm (the wire's radius)
+/// and `gap` below the wire.
 Motion block_below(int elements, double gap, double tilt) {
   const auto block = std::make_shared<MeshShape>(test::cuboid(0.04, 0.01, 0.04));
   Motion motion = body_below(soft_wire(elements), block, {0.1, -0.006 - gap, 0.0}, 0.05, 0.2);

@@ -19,7 +19,8 @@ TEST(ForceRecord, IsAPolynomialThroughTheLastStates) {
   for (const double t : {0.92, 0.97, 1.0}) {
     EXPECT_NEAR(record.at(t, 0, 4), t * t * t, 1e-15);
     EXPECT_NEAR(record.at(t, 0, 100), t * t * t, 1e-15);
-    // The parabola through 0.6, 0.9, 1.0 and the line through 0.9, 1.0 miss the cube by the products of the distances.
+    // The parabola through 0.6, 0.9, 1.0 and the line through 0.9, 1.0 miss the cube by the products of the
+    // distances.
     EXPECT_NEAR(record.at(t, 0, 3) - t * t * t, -(t - 0.6) * (t - 0.9) * (t - 1.0), 1e-15);
     EXPECT_NEAR(record.at(t, 0, 2) - t * t * t, -(t - 0.9) * (t - 1.0) * (t + 1.9), 1e-15);
     EXPECT_NEAR(record.at(t, 1, 4), 1.0, 1e-15);

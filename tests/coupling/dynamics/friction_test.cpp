@@ -35,7 +35,8 @@ TEST(MotionFriction, ForceAndRateHaveExactDerivatives) {
   for (const MotionFriction& friction : {papers_friction(), smooth}) {
     for (const double speed : {0.004, 0.3, 2.0}) {
       for (const double stretch : {0.5, 0.9995, 1.2}) {
-        // Of order one: z in micrometres, w in units of its size, loads in units of 10 N, which they gain or lose in 0.1 s or in 1 us.
+        // Of order one: z in micrometres, w in units of its size, loads in units of 10 N, which they gain or
+        // lose in 0.1 s or in 1 us.
         for (const double elastic_rate : {100.0, -1e7}) {
           const auto state = [&](const VectorXd& x) {
             return BristleState{1e-6 * x.segment<2>(0), speed * x.segment<2>(2), 10.0 * x[4], 10.0 * x[5]};
@@ -78,8 +79,9 @@ TEST(MotionFriction, CoefficientIsThatOfThePapers) {
   EXPECT_DOUBLE_EQ(slip_coefficient(f, 1.0).value, 0.1);
 }
 
-// The power of friction is that stored by the bristle, mu_s p_e z^2/(2 z_m), and heat, which is never negative: whatever the load does, whichever
-// coefficient holds, and also where the bristle was stretched too far. Below its reach a bristle under a steady load does not creep.
+// The power of friction is that stored by the bristle, mu_s p_e z^2/(2 z_m), and heat, which is never
+// negative: whatever the load does, whichever coefficient holds, and also where the bristle was stretched too
+// far. Below its reach a bristle under a steady load does not creep.
 TEST(MotionFriction, HeatIsNeverNegative) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -112,8 +114,8 @@ TEST(MotionFriction, HeatIsNeverNegative) {
   EXPECT_LT(slides, 9000);
 }
 
-// A bristle that is loaded and unloaded while it sticks gives back what went in, and no more: with a spring that stiffened under its
-// deflection each round would leave energy.
+// A bristle that is loaded and unloaded while it sticks gives back what went in, and no more: with a spring
+// that stiffened under its deflection each round would leave energy.
 TEST(MotionFriction, AChangingLoadStoresNothing) {
   MotionFriction f = papers_friction();
   f.bristle_time = 1e-9;  // without a dashpot: forces to 1e-6
@@ -141,8 +143,8 @@ TEST(MotionFriction, AChangingLoadStoresNothing) {
   EXPECT_NEAR(taken, 0.0, 1e-3 * 2.4e-8);
 }
 
-// At a constant coefficient more speed never takes force away, however far the bristle is stretched: the derivative by the
-// sliding has no negative direction, and the force is Coulomb's at most.
+// At a constant coefficient more speed never takes force away, however far the bristle is stretched: the
+// derivative by the sliding has no negative direction, and the force is Coulomb's at most.
 TEST(MotionFriction, MoreSpeedNeverMeansLessForce) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -231,10 +233,10 @@ struct Touching {
 };
 
 TEST(MotionFriction, JacobianMatchesDifferencesInStickAndSlip) {
-  for (
-      const double stretch :
-      {0.3,
-       1.5}) {  // all that touches sticks, or slides: a derivative is not asked for where one becomes the other
+  for (const double stretch :
+       {0.3,
+        // all that touches sticks, or slides: a derivative is not asked for where one becomes the other
+        1.5}) {
     SCOPED_TRACE(stretch);
     MotionFriction soft = papers_friction();
     // A bristle as soft as the wire's axial stiffness of 1e3/0.025, so that no row drowns the others.
@@ -296,7 +298,8 @@ class Underside final : public ContactShape {
   [[nodiscard]] std::vector<Eigen::Matrix3Xd> drawing() const override { return {}; }
 };
 
-/// A block of 1 kg that does not turn, with a flat underside, on the top of a thick arch of steel wire that is bent by
+/// A block of 1 kg that does not turn, with a flat underside, on the top of a thick arch of steel wire that
+/// is bent by
 /// nature: 20 mm in radius, 6 mm thick.
 Motion block_on_arch() {
   constexpr double radius = 0.02;
@@ -339,7 +342,8 @@ Motion block_on_arch() {
   return motion;
 }
 
-// Both directions of the tangent plane: a block that starts obliquely keeps its line and stops after v^2/(2 mu g).
+// Both directions of the tangent plane: a block that starts obliquely keeps its line and stops after v^2/(2
+// mu g).
 TEST(MotionFriction, ObliqueBlockStopsOnItsLine) {
   Motion motion = block_on_arch();
   MotionFriction& f = motion.contacts[0].friction;

@@ -142,9 +142,10 @@ Loads static_loads(wire::RodInMotion constants, int elements, Eigen::Matrix3Xd& 
   return {left, right, -moments[0], Vector3d(rest.rightCols<1>()).cross(right) + moments[1]};
 }
 
-// Out of the plane, everything at once: EI that differ, natural curvature and twist, mounts that are turned about the
-// wire and against each other, one that gives. Vertices on 60, 120 and 240 edges, extrapolated (W.11), against 24 and 48
-// edges with curvatures as unknowns. Twist and the turn of the directors within an edge stay of second order.
+// Out of the plane, everything at once: EI that differ, natural curvature and twist, mounts that are turned
+// about the wire and against each other, one that gives. Vertices on 60, 120 and 240 edges, extrapolated
+// (W.11), against 24 and 48 edges with curvatures as unknowns. Twist and the turn of the directors within an
+// edge stay of second order.
 TEST(HigherOrderRest, InSpaceIsThatOfManyVertices) {
   wire::RodInMotion rod;
   wire::SpatialRodProperties& p = rod.properties;
@@ -223,8 +224,9 @@ MotionResult impact(int elements) {
   return simulate(motion, options);
 }
 
-// The undamped, quasi-static energy integral gives 110.22 N; the damping of 1e-5 s takes 0.15 % off (with 3e-6 s it is
-// 110.23 N), vibrations of the wire add as much as 0.1 %. Plain vertices give 100.0 N with 20 elements.
+// The undamped, quasi-static energy integral gives 110.22 N; the damping of 1e-5 s takes 0.15 % off (with
+// 3e-6 s it is 110.23 N), vibrations of the wire add as much as 0.1 %. Plain vertices give 100.0 N with 20
+// elements.
 TEST(HigherOrderMotion, TwentyElementsGiveTheImpact) {
   const MotionResult r = impact(20);
   ASSERT_TRUE(r.report.usable()) << r.report.message;
@@ -235,7 +237,8 @@ TEST(HigherOrderMotion, TwentyElementsGiveTheImpact) {
   EXPECT_LT(std::abs(r.energy.integrator), 1e-3 * 0.0445);
 }
 
-// Struck beside its middle and out of its plane, the wire twists: forces and couples of the mounts balance its momenta.
+// Struck beside its middle and out of its plane, the wire twists: forces and couples of the mounts balance
+// its momenta.
 TEST(HigherOrderMotion, MomentaBalanceOutOfThePlane) {
   wire::RodInMotion rod = test::soft_wire(12);
   rod.formulation = Formulation::higher_order;

@@ -21,7 +21,8 @@ using test::block;
 using test::body_of;
 using test::fine;
 
-/// Wire of a ring of a radius, from azimuth 0 to theta, about a shaft along z that body 0 carries in the middle.
+/// Wire of a ring of a radius, from azimuth 0 to theta, about a shaft along z that body 0 carries in the
+/// middle.
 LawWire ring_wire(double radius, double theta, double length) {
   LawWire w;
   w.p_from = {radius, 0.0, 0.0};
@@ -40,7 +41,8 @@ MovingFrame fixed_at(const Vector3d& p) {
   return MovingFrame({Eigen::Matrix3d::Identity(), p});
 }
 
-/// A wire between fixed mounts about a shaft at the origin, told its reach with the ring open, where it is slack.
+/// A wire between fixed mounts about a shaft at the origin, told its reach with the ring open, where it is
+/// slack.
 struct WireAboutShaft {
   BodyPart body{block("shaft", 1.0, {0.1, 0.1, 0.1}), Vector3d::Zero(), MotionOptions()};
   LawWirePart part;
@@ -63,8 +65,9 @@ struct WireAboutShaft {
   }
 };
 
-// The length of a string about a shaft in the middle of a ring, beyond the angle at which it touches: 2 sqrt(R^2 - r^2) +
-// r (theta - 2 acos(r/R)); its ends pull the ring with the moment T r, and the shaft with 2 T sin(half the turn).
+// The length of a string about a shaft in the middle of a ring, beyond the angle at which it touches: 2
+// sqrt(R^2 - r^2) + r (theta - 2 acos(r/R)); its ends pull the ring with the moment T r, and the shaft with 2
+// T sin(half the turn).
 TEST(LawWire, RingHasTheClosedForm) {
   constexpr double radius = 0.1, r = 6.75e-3, length = 0.2;
   for (const double degrees : {170.0, 177.0, 180.0, 200.0, 340.0}) {
@@ -93,7 +96,8 @@ TEST(LawWire, RingHasTheClosedForm) {
   }
 }
 
-// A shaft that is pressed into a mount of its wire: length and force go on, and the force is the slope of the energy on both sides.
+// A shaft that is pressed into a mount of its wire: length and force go on, and the force is the slope of the
+// energy on both sides.
 TEST(LawWire, GoesOnWhereTheShaftReachesAMount) {
   constexpr double r = 6.75e-3, theta = 3.0, length = 0.19;
   const LawWire w = ring_wire(0.1, theta, length);
@@ -113,8 +117,8 @@ TEST(LawWire, GoesOnWhereTheShaftReachesAMount) {
   }
 }
 
-// A shaft thrown at a mount of a slack string: (v/a - ln(1 + a v)/a^2) is the same before, at v, and after, at -v, as
-// m v dv/dx = -k x (1 + a v).
+// A shaft thrown at a mount of a slack string: (v/a - ln(1 + a v)/a^2) is the same before, at v, and after,
+// at -v, as m v dv/dx = -k x (1 + a v).
 TEST(LawWire, MountThrowsTheShaftBack) {
   constexpr double speed = 0.002, a = 1000.0, r = 6.75e-3;
   Motion motion;
@@ -213,7 +217,8 @@ TEST(LawWire, JacobianMatchesDifferences) {
   EXPECT_GE(acting, 24);
 }
 
-/// A body with a shaft between three strings of a ring that is turned to an angle, thrown in its plane and along the axis.
+/// A body with a shaft between three strings of a ring that is turned to an angle, thrown in its plane and
+/// along the axis.
 Motion thrown(LawWire::Kind kind) {
   Motion motion;
   motion.bodies = {block("visitor", 20.0, {2.0, 3.0, 1.0}), block("ring", 5.0, {0.4, 0.5, 0.6})};
@@ -236,8 +241,8 @@ Motion thrown(LawWire::Kind kind) {
   return motion;
 }
 
-// Without friction and damping nothing is lost, whatever the shaft does between the strings; momenta stay. Tolerances as those of the
-// integration.
+// Without friction and damping nothing is lost, whatever the shaft does between the strings; momenta stay.
+// Tolerances as those of the integration.
 TEST(LawWire, StringsKeepEnergyAndMomentum) {
   const Motion motion = thrown(LawWire::Kind::stretched);
   double highest = 0.0;
@@ -278,7 +283,8 @@ TEST(LawWire, LossesCloseTheBalance) {
   }
 }
 
-// A shaft in the middle of a rod that is driven into it: x = lever (commanded less actual angle), the angle of the tangent.
+// A shaft in the middle of a rod that is driven into it: x = lever (commanded less actual angle), the angle
+// of the tangent.
 TEST(LawWire, RodIsMetByItsAngle) {
   LawWire w = ring_wire(0.1, std::numbers::pi, 0.2);  // the chord is the x axis, the bulge y
   w.kind = LawWire::Kind::rod;
@@ -287,7 +293,8 @@ TEST(LawWire, RodIsMetByItsAngle) {
   const WireAboutShaft wire(w);
   const LawWirePart& part = wire.part;
   VectorXd y = wire.at({0.02, -0.004, 0.0});
-  // From the pivot at x = R the axis stands at an angle above the chord of asin(y/rho); the tangent is asin(r/rho) beyond.
+  // From the pivot at x = R the axis stands at an angle above the chord of asin(y/rho); the tangent is
+  // asin(r/rho) beyond.
   const auto x = [](double along, double height) {
     const double rho = std::hypot(0.1 - along, height);
     return std::sqrt(rho * rho - r * r) * (std::asin(height / rho) + std::asin(r / rho));
@@ -309,7 +316,8 @@ TEST(LawWire, RodIsMetByItsAngle) {
   EXPECT_TRUE(part.wrenches(y).empty());
 }
 
-// Two wires on a free ring that a shaft, askew, pushes into corners of an energy that depends on its place in the plane: nothing is lost.
+// Two wires on a free ring that a shaft, askew, pushes into corners of an energy that depends on its place in
+// the plane: nothing is lost.
 TEST(LawWire, PushesKeepEnergyAndMomentum) {
   Motion motion;
   motion.bodies = {block("visitor", 2.0, {0.02, 0.03, 0.01}), block("ring", 5.0, {0.04, 0.05, 0.06})};

@@ -31,7 +31,8 @@ std::vector<MotionMode> modes_of(const Motion& motion) {
   return small_motions_at(motion, options, result.last).modes;
 }
 
-// A body on a spring alone, and with a dashpot that lets it only creep: lambda = -(c -+ (c^2 - 4 k m)^1/2)/(2 m).
+// A body on a spring alone, and with a dashpot that lets it only creep: lambda = -(c -+ (c^2 - 4 k m)^1/2)/(2
+// m).
 TEST(Modes, FastestIsOfWhatOnlyDecaysToo) {
   for (const double damping : {0.0, 1000.0}) {
     Motion motion;
@@ -157,7 +158,8 @@ TEST(Modes, OfAStretchedWireAreThoseOfAString) {
   }
 }
 
-// The mesh of half as many elements gives the error of the finer one, and that of the twentieth partial beyond a hundredth.
+// The mesh of half as many elements gives the error of the finer one, and that of the twentieth partial
+// beyond a hundredth.
 TEST(Modes, OfAStretchedWireHaveTheErrorOfTheirMesh) {
   const auto small_motions_of = [](int elements) {
     const Motion motion = TautString::motion(elements);

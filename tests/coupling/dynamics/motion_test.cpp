@@ -103,7 +103,8 @@ TEST(MotionJacobian, MatchesDifferencesInContact) {
   ASSERT_GT(contact.sums(y).force.norm(), 0.05);
   VectorXd rate(y.size());
   for (double& r : rate) r = 0.1 * unit(random);
-  // Directions of a size that suits each unknown; the quaternion moves along the sphere, as it does in a motion.
+  // Directions of a size that suits each unknown; the quaternion moves along the sphere, as it does in a
+  // motion.
   const Eigen::MatrixXd directions = test::along_unit_quaternions(y, {body.quaternion()});
   const test::DerivativeError error = test::compare_dae_jacobian(system, y, rate, directions, 1e-3);
   // The derivative's integral by Gauss's rule, not that of the rule, beside differences of the force.

@@ -1,4 +1,4 @@
-// Mounts of wires stop what strikes them.                                                       theory.md (M.35)
+// Mounts of wires stop what strikes them.                                                    theory.md (M.35)
 
 #include "coupling/contact/foundation.hpp"
 #include "coupling/dynamics/contact/contact_part.hpp"
@@ -55,7 +55,8 @@ struct AtTheMount {
   }
 };
 
-// A shaft's radius with the wire's, but four diameters at least; of a wire whose diameter is not said, those of a solid one.
+// A shaft's radius with the wire's, but four diameters at least; of a wire whose diameter is not said, those
+// of a solid one.
 TEST(MountContact, GivesWayOverALengthOfShaftOrWire) {
   constexpr double EA = 1e3, EI = 1e-3, diameter = 0.002;
   EXPECT_DOUBLE_EQ(mount_length(EA, EI, diameter, 0.02), 0.021);

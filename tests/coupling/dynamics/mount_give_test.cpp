@@ -1,4 +1,5 @@
-// Mounts that give along the wire: springs, dashpots and slip between the wire's end and its mount, theory.md (M.38).
+// Mounts that give along the wire: springs, dashpots and slip between the wire's end and its mount, theory.md
+// (M.38).
 
 #include "coupling/dynamics/model/start.hpp"
 #include "coupling/dynamics/run/simulate.hpp"
@@ -60,7 +61,8 @@ TEST(MountGive, FrequencyAlongTheWireIsThatOfARodWithASpring) {
     return false;
   });
   ASSERT_TRUE(r.report.usable()) << r.report.message;
-  // After two and a quarter periods the end is where it goes furthest; the mesh lowers the frequency by (beta h)^2/24 = 9e-5.
+  // After two and a quarter periods the end is where it goes furthest; the mesh lowers the frequency by (beta
+  // h)^2/24 = 9e-5.
   EXPECT_NEAR(end, speed / omega * std::sin(beta * length), 1e-3 * speed / omega);
 }
 
@@ -85,8 +87,8 @@ TEST(MountGive, ATautWireRestsWithTheTensionOfSpringsInSeries) {
   EXPECT_LT(worst, 1e-6 * tension);
 }
 
-// A wire that flies against its mount beyond what that bears: the spring's force stays at the force of slip, what is lost is that force
-// times the slip, and nothing else.
+// A wire that flies against its mount beyond what that bears: the spring's force stays at the force of slip,
+// what is lost is that force times the slip, and nothing else.
 TEST(MountGive, SlipBoundsTheForceAndLosesItsWork) {
   constexpr double slip_force = 2.0, k = 5e4;
   MountGive give{k};

@@ -57,8 +57,9 @@ MotionOptions fine(double duration) {
   return o;
 }
 
-// Begun at 0.1 s, the disc turns at 2 rad/s after a ramp of 0.1 s: it passes 1 rad at 0.1 + 0.05 + 0.5 s, as nothing turns it
-// against the gear by then; the brake then holds it there, and what it had is lost in the brake and the gear.
+// Begun at 0.1 s, the disc turns at 2 rad/s after a ramp of 0.1 s: it passes 1 rad at 0.1 + 0.05 + 0.5 s, as
+// nothing turns it against the gear by then; the brake then holds it there, and what it had is lost in the
+// brake and the gear.
 TEST(Phases, BeginAtTheirTimesAndOnWhatHappens) {
   Motion motion;
   motion.arms = {disc()};
@@ -82,8 +83,9 @@ TEST(Phases, BeginAtTheirTimesAndOnWhatHappens) {
   EXPECT_NEAR(result.report.time, result.phases[2].time, 1e-12);
   EXPECT_NEAR(last_angle, 1.0, 1e-3);
   EXPECT_LT(std::abs(result.energy.integrator), 1e-4 * result.energy.work);
-  // The course gives the disc and its motor what they move with, (0.5 + 0.1) 2^2/2, and what swings in the gear at both ends of
-  // the ramp: the step of 10 N m bends it by 1 mrad, which costs 5 mJ of energy and as much of damping.
+  // The course gives the disc and its motor what they move with, (0.5 + 0.1) 2^2/2, and what swings in the
+  // gear at both ends of the ramp: the step of 10 N m bends it by 1 mrad, which costs 5 mJ of energy and as
+  // much of damping.
   EXPECT_NEAR(result.energy.work, 0.5 * 0.6 * 4.0 + 0.01, 1e-3);
 }
 
@@ -154,7 +156,8 @@ SensedBound sensed_above(double bound) {
   return b;
 }
 
-// 1 rad is passed at 0.65 s. A sensor of 20 Hz that is 0.12 s late tells of it with the first reading from 0.77 s on, at 0.8 s: exactly then.
+// 1 rad is passed at 0.65 s. A sensor of 20 Hz that is 0.12 s late tells of it with the first reading from
+// 0.77 s on, at 0.8 s: exactly then.
 TEST(Phases, BeginWithAReadingNotBetween) {
   const struct {
     double interval, delay, hold, begins;
@@ -173,7 +176,8 @@ TEST(Phases, BeginWithAReadingNotBetween) {
   }
 }
 
-// Between two output times a reading is straight: at 0.66 s - 3.3 ms it tells 0.67 of what was there at 0.65 s + ... of the angle, which is a line.
+// Between two output times a reading is straight: at 0.66 s - 3.3 ms it tells 0.67 of what was there at 0.65
+// s + ... of the angle, which is a line.
 TEST(Phases, ReadingsBetweenOutputsAreStraight) {
   SensedBound b = sensed_above(0.0);
   SensedSignal signal = angle_of_disc(0.05, 0.0133);
@@ -187,7 +191,8 @@ TEST(Phases, ReadingsBetweenOutputsAreStraight) {
   }
 }
 
-// A reading that does not keep the bound breaks the hold, whatever is there between readings: noise of one reading in six.
+// A reading that does not keep the bound breaks the hold, whatever is there between readings: noise of one
+// reading in six.
 TEST(Phases, OneReadingBreaksTheHold) {
   SensedSignal signal = angle_of_disc(0.05, 0.0);
   signal.noise = [](long reading) { return Vector3d(reading % 6 == 0 ? -10.0 : 0.0, 0.0, 0.0); };

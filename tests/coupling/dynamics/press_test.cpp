@@ -1,4 +1,5 @@
-// Where Newton's method begins with a contact: the start of a touch, the accepted state, or the predicted one.
+// Where Newton's method begins with a contact: the start of a touch, the accepted state, or the predicted
+// one.
 
 #include "coupling/dynamics/model/press.hpp"
 #include "coupling/dynamics/model/input_memo.hpp"

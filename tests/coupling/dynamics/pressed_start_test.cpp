@@ -44,8 +44,9 @@ RoundWall wall_of(double inner) {
   return wall;
 }
 
-/// Half of an inextensible elastica from the middle on, about the wall's centre, y through the middle of the wire: along a circle over an angle,
-/// then free as a force on its end bends it. State: x, y, tangent's angle, curvature.
+/// Half of an inextensible elastica from the middle on, about the wall's centre, y through the middle of the
+/// wire: along a circle over an angle, then free as a force on its end bends it. State: x, y, tangent's
+/// angle, curvature.
 Vector4d end_of(double radius, double angle, const Vector2d& force) {
   constexpr int steps = 2000;
   const double free = 0.5 * length - radius * angle, h = free / steps, EI = 0.048;
@@ -62,8 +63,8 @@ Vector4d end_of(double radius, double angle, const Vector2d& force) {
   return s;
 }
 
-/// Angle over which the wire lies on the wall, to either side of its middle, and the force on its pin: by Newton's method from where the pin is
-/// and no couple acts.
+/// Angle over which the wire lies on the wall, to either side of its middle, and the force on its pin: by
+/// Newton's method from where the pin is and no couple acts.
 Vector3d lying(double radius) {
   const auto miss = [&](const Vector3d& u) -> Vector3d {
     const Vector4d e = end_of(radius, u[0], u.tail<2>());

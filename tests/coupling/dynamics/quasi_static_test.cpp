@@ -65,7 +65,8 @@ TEST(QuasiStaticWire, ReturnsABodyAsTheFullWireDoes) {
   EXPECT_LT(still.statistics.steps, full.statistics.steps);
 }
 
-// Steps through the touch begin where it does: looked for by steps that fail it took steps of 5e-8 s, and twice the matrices.
+// Steps through the touch begin where it does: looked for by steps that fail it took steps of 5e-8 s, and
+// twice the matrices.
 TEST(QuasiStaticWire, IsTouchedAsTheFullWireWithoutTinySteps) {
   for (const bool quasi_static : {false, true}) {
     const numerics::IdaStatistics s = run(head_on(quasi_static, 8.9, 0.1), 0.002).statistics;
@@ -74,7 +75,8 @@ TEST(QuasiStaticWire, IsTouchedAsTheFullWireWithoutTinySteps) {
   }
 }
 
-// Between pins the tenth mode of the inertia that is kept has omega^2 = (10 pi/L)^4 EI/(1e-3 rho A), and tau omega/2 is its damping ratio.
+// Between pins the tenth mode of the inertia that is kept has omega^2 = (10 pi/L)^4 EI/(1e-3 rho A), and tau
+// omega/2 is its damping ratio.
 TEST(QuasiStaticWire, ItsTenthModeIsCriticallyDampedAtLeast) {
   Motion motion = head_on(true, 8.9, 0.1);
   wire::RodInMotion& rod = motion.wires[0].rod;
@@ -87,7 +89,8 @@ TEST(QuasiStaticWire, ItsTenthModeIsCriticallyDampedAtLeast) {
   EXPECT_EQ(wire::RodModel(rod).damping().bending_time, declared.bending_time);
 }
 
-// Without any damping declared it follows no waves either: some more steps, not a hundred times as many. The slow body gets its speed back.
+// Without any damping declared it follows no waves either: some more steps, not a hundred times as many. The
+// slow body gets its speed back.
 TEST(QuasiStaticWire, FollowsNoWavesWithoutDamping) {
   Motion bare = head_on(true, 8.9, 0.1);
   bare.wires[0].rod.damping = {};
@@ -118,8 +121,8 @@ TEST(QuasiStaticWire, EstimatesWhatItLeavesOut) {
   EXPECT_EQ(full.left_out[0].kinetic, 0.0);
 }
 
-// Driven at any speed the force is that of the static push on the same vertices, at the integrator's steps and between them. Damping has
-// half of the thousandth.
+// Driven at any speed the force is that of the static push on the same vertices, at the integrator's steps
+// and between them. Damping has half of the thousandth.
 TEST(QuasiStaticWire, FollowsTheStaticCurve) {
   constexpr int elements = 200;
   constexpr double pace = 20.0 * mm;  // [m/s]

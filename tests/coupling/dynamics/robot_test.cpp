@@ -63,8 +63,8 @@ double speed_after(double delay, double damping) {
   return v;
 }
 
-/// The delayed equation by steps of a whole share of the delay, with the parabola through what the force was at their ends and middles: nothing of
-/// the code under test.
+/// The delayed equation by steps of a whole share of the delay, with the parabola through what the force was
+/// at their ends and middles: nothing of the code under test.
 double speed_by_steps(double delay, double damping) {
   const int per_delay = 400;
   const double h = delay / per_delay;
@@ -90,7 +90,8 @@ double speed_by_steps(double delay, double damping) {
   return v;
 }
 
-// A body that plays a free one late leaves faster than it came: growth at omega^2 tau/2 over half a swing makes exp(pi omega tau/2).
+// A body that plays a free one late leaves faster than it came: growth at omega^2 tau/2 over half a swing
+// makes exp(pi omega tau/2).
 TEST(Robot, BouncesOffFasterByItsDelay) {
   const double omega = std::sqrt(stiffness / mass);
   for (const double delay : {0.001, 0.002, 0.004}) {

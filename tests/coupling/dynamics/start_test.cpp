@@ -19,7 +19,8 @@ using Kind = wire::SpatialEnd::Kind;
 
 constexpr double mounts_apart = 175.0 * mm;
 
-/// Thrust of an inextensible elastica between pins, (2 K(k))^2 EI/L^2 with l/L = 2 E(k)/K(k) - 1, l between the pins [N].
+/// Thrust of an inextensible elastica between pins, (2 K(k))^2 EI/L^2 with l/L = 2 E(k)/K(k) - 1, l between
+/// the pins [N].
 double thrust_between_pins(double stiffness, double length) {
   const auto excess = [length](double k) {
     return 2.0 * boost::math::ellint_2(k) / boost::math::ellint_1(k) - 1.0 - mounts_apart / length;

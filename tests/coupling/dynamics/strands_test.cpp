@@ -30,9 +30,10 @@ wire::RodInMotion strand_rod(int elements) {
   return r;
 }
 
-// Some vertices slip, some stick. By the positions the second derivatives of the curvature are the symmetric part of
-// what differences of gradients in travelling frames give (SpatialRod): exact where all stays in a plane, which is where
-// they are tested; out of it Newton's matrix lacks the frames' holonomy, and what it solves is the same.
+// Some vertices slip, some stick. By the positions the second derivatives of the curvature are the symmetric
+// part of what differences of gradients in travelling frames give (SpatialRod): exact where all stays in a
+// plane, which is where they are tested; out of it Newton's matrix lacks the frames' holonomy, and what it
+// solves is the same.
 TEST(MotionStrands, JacobianMatchesDifferences) {
   wire::RodInMotion constants = strand_rod(6);
   constants.strands.time = 1e-2;
@@ -117,7 +118,8 @@ TEST(MotionStrands, DecayIsAccountedForAndEndsInTheStick) {
   EXPECT_LT(std::abs(s.result.energy.integrator), 5e-3 * start);
   ASSERT_GT(s.peaks.size(), 6u);
   const std::size_t end = s.peaks.size() - 1;
-  // Slip takes much of a large swing and nothing of one that stays below the slip curvature (but the dashpots' little).
+  // Slip takes much of a large swing and nothing of one that stays below the slip curvature (but the
+  // dashpots' little).
   const double first = s.peaks[1] / s.peaks[0];
   const double late = s.peaks[end] / s.peaks[end - 1];
   EXPECT_LT(first, 0.85);

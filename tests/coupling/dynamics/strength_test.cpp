@@ -18,8 +18,8 @@ using ::testing::HasSubstr;
 
 constexpr int edges = 20;
 
-// A straight wire that stands upright under its weight w = 100 N/m, stretched so that the mean tension is 30 N: 40 N at the
-// upper mount, and on the last edge, which carries all but half an element of weight, 39.5 N.
+// A straight wire that stands upright under its weight w = 100 N/m, stretched so that the mean tension is 30
+// N: 40 N at the upper mount, and on the last edge, which carries all but half an element of weight, 39.5 N.
 Motion standing_wire() {
   Motion motion;
   wire::RodInMotion rod = test::soft_wire(edges);
@@ -74,7 +74,8 @@ TEST(Strength, EndsTheRunWhereAsked) {
 }
 
 TEST(Strength, ViscousTensionCounts) {
-  // One mount leaves at 0.2 m/s, all vertices in proportion: T = EA (e + tau e') with e' = 1/s, largest at the end.
+  // One mount leaves at 0.2 m/s, all vertices in proportion: T = EA (e + tau e') with e' = 1/s, largest at
+  // the end.
   Motion motion;
   wire::RodInMotion rod = test::soft_wire(edges);
   const Eigen::Matrix3Xd positions = straight_wire(rod, Vector3d::Zero(), {0.2, 0.0, 0.0});
@@ -96,8 +97,8 @@ TEST(Strength, ViscousTensionCounts) {
 class BendingStrength : public ::testing::TestWithParam<wire::Formulation> {};
 
 TEST_P(BendingStrength, IsTheStressOfABentBeam) {
-  // A quarter radian on 0.2 m between clamps that point along the arc: constant moment, at rest. The fibre outside bears
-  // E d/2 over the radius of 0.8 m.
+  // A quarter radian on 0.2 m between clamps that point along the arc: constant moment, at rest. The fibre
+  // outside bears E d/2 over the radius of 0.8 m.
   constexpr double angle = 0.25;
   wire::WireSpecification solid;
   solid.diameter = 1e-3;
@@ -124,7 +125,8 @@ TEST_P(BendingStrength, IsTheStressOfABentBeam) {
   motion.wires.push_back({"wire", rod, positions, {}, wire_strength(solid, 1000.0, false)});
   const MotionResult result = simulate(motion, short_run());
   ASSERT_TRUE(result.report.usable()) << result.report.message;
-  // 2 tan(phi/2) of turns of 0.0125 at the vertices and half of that at the clamps: equal to 2e-5, so at rest to that.
+  // 2 tan(phi/2) of turns of 0.0125 at the vertices and half of that at the clamps: equal to 2e-5, so at rest
+  // to that.
   EXPECT_NEAR(result.strength[0].bending, section * stress, 1e-3 * section * stress);
   EXPECT_LT(std::abs(result.strength[0].tension), 0.1);  // of 196 N
   EXPECT_NEAR(result.strength[0].share, section * stress / 1000.0, 1e-3);

@@ -22,7 +22,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// A soft wire across x, met from below beside its middle by a ball off the body's centre, with friction and weight.
+/// A soft wire across x, met from below beside its middle by a ball off the body's centre, with friction and
+/// weight.
 Motion impact(wire::Formulation formulation) {
   wire::RodInMotion rod = test::soft_wire(12);
   rod.formulation = formulation;
@@ -75,7 +76,8 @@ MotionResult run(const Motion& motion, double duration = 0.05) {
   return result;
 }
 
-// A body that drifts out of the plane by a nanometre a second makes it a motion in space; what it does else is the same.
+// A body that drifts out of the plane by a nanometre a second makes it a motion in space; what it does else
+// is the same.
 TEST(SymmetryPlane, TheMotionInItIsThatOfSpace) {
   for (const wire::Formulation formulation : {wire::Formulation::vertices, wire::Formulation::higher_order}) {
     Motion motion = impact(formulation);

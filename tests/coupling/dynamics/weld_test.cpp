@@ -82,8 +82,8 @@ MotionOptions fine(double duration) {
   return o;
 }
 
-/// Compares the Jacobian of a system with differences at a point, along the spheres of the quaternions that start at
-/// `quaternions`.
+/// Compares the Jacobian of a system with differences at a point, along the spheres of the quaternions that
+/// start at `quaternions`.
 void expect_jacobian(numerics::DaeSystem& system, const VectorXd& y, const VectorXd& rate,
                      const std::vector<int>& quaternions, double limit) {
   const test::DerivativeError error =
@@ -310,9 +310,9 @@ TEST(MotionLink, AWireBetweenMountsThatMoveTogetherIsTheFixedWire) {
 }
 
 TEST(MotionLink, ASpinningFrameStretchesItsWireByTheCentrifugalForce) {
-  // A straight wire along x on a heavy free body that spins about z through the wire's middle, settled by its damping:
-  // EA u'' = -m w^2 x, u = 0 at both ends, so that the mounts' tension is m w^2 l^2/12 (l the length) less ... at x = +-l/2:
-  // N = EA u' = m w^2 (l^2/24 - x^2/2).
+  // A straight wire along x on a heavy free body that spins about z through the wire's middle, settled by its
+  // damping: EA u'' = -m w^2 x, u = 0 at both ends, so that the mounts' tension is m w^2 l^2/12 (l the
+  // length) less ... at x = +-l/2: N = EA u' = m w^2 (l^2/24 - x^2/2).
   Motion motion;
   wire::RodInMotion rod = test::soft_wire(20);
   rod.damping.axial_time = 2e-3;
@@ -340,7 +340,8 @@ TEST(MotionLink, ASpinningFrameStretchesItsWireByTheCentrifugalForce) {
   ASSERT_TRUE(result.report.usable()) << result.report.message;
   const Vector3d along = last.bodies[0].orientation * Vector3d::UnitX();
   const double load = 0.01 * spin * spin;
-  // Half of the end elements' mass is on the end vertices: the mount carries its centripetal force, h/2 m w^2 l/2, too.
+  // Half of the end elements' mass is on the end vertices: the mount carries its centripetal force, h/2 m w^2
+  // l/2, too.
   const double end = load * (0.2 * 0.2 / 24.0 - 0.1 * 0.1 / 2.0);
   EXPECT_NEAR(last.mount_forces[1].dot(along), end, 2e-2 * std::abs(end));
   EXPECT_NEAR(last.mount_forces[0].dot(along), -end, 2e-2 * std::abs(end));
@@ -427,8 +428,8 @@ TEST(MotionLink, DrivesOfAnArmSwitchInAMotion) {
   EXPECT_LT(std::abs(result.energy.integrator), 1e-5 * result.energy.dissipated);
 }
 
-/// Piecewise law, friction that sticks, a servo that reaches its limit, a switch of the drives at 1 s, a load: all that an arm
-/// remembers.
+/// Piecewise law, friction that sticks, a servo that reaches its limit, a switch of the drives at 1 s, a
+/// load: all that an arm remembers.
 MotionArm restless_arm() {
   multibody::ElasticArm arm = small_arm(false, 1.0, 0.0);
   for (multibody::ElasticJoint& joint : arm.joints) {

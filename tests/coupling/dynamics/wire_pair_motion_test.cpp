@@ -111,8 +111,8 @@ TEST(WirePairBalance, WhatIsPressedOnAMountIsItsReaction) {
   EXPECT_LT(r.angular_momentum_error.norm(), 1e-6 * impulse * 0.1);
 }
 
-/// Deflection [m] of a clamped wire of bending stiffness EI under tension at its middle, by the force there, with the tension that
-/// its way round adds: w' = F/(2T) (1 - cosh(k (L/4 - x))/cosh(k L/4)), k^2 = T/EI.
+/// Deflection [m] of a clamped wire of bending stiffness EI under tension at its middle, by the force there,
+/// with the tension that its way round adds: w' = F/(2T) (1 - cosh(k (L/4 - x))/cosh(k L/4)), k^2 = T/EI.
 double taut_deflection(double force, double span, double tension_at_rest, double stretch, double bending) {
   double tension = tension_at_rest;
   double deflection = 0.0;
@@ -133,7 +133,8 @@ double taut_deflection(double force, double span, double tension_at_rest, double
   return deflection;
 }
 
-// Two taut wires across each other, nearer than their thickness by 2 mm, come to rest with the force that bends both.
+// Two taut wires across each other, nearer than their thickness by 2 mm, come to rest with the force that
+// bends both.
 TEST(WirePairStatics, TautWiresPressAsTensionedBeamsDo) {
   constexpr double overlap = 2e-3, strain = 0.02;
   std::vector<double> errors;
@@ -174,15 +175,16 @@ TEST(WirePairStatics, TautWiresPressAsTensionedBeamsDo) {
     EXPECT_NEAR(last.contacts[0].normal_force, last.contacts[0].force.y(), 2e-4 * low);
     EXPECT_NEAR(last.mount_forces[0].y() + last.mount_forces[1].y(), -last.contacts[0].force.y(), 1e-4 * low);
   }
-  // Second order: an eighth of the wave length of the bend, sqrt(EI/T) = 7 mm, is met by 80 elements of 2.5 mm.
+  // Second order: an eighth of the wave length of the bend, sqrt(EI/T) = 7 mm, is met by 80 elements of 2.5
+  // mm.
   EXPECT_LT(std::abs(errors[2]), 2e-3);
   EXPECT_LT(std::abs(errors[2]), 0.4 * std::abs(errors[1]))
       << errors[0] << ' ' << errors[1] << ' ' << errors[2];
   EXPECT_LT(std::abs(errors[1]), 0.01);
 }
 
-/// A free wire lies across two taut rails and slides along itself in tilted weight. Returns the ratio of tangential to normal
-/// force on both rails together at the end, and the way it went [m].
+/// A free wire lies across two taut rails and slides along itself in tilted weight. Returns the ratio of
+/// tangential to normal force on both rails together at the end, and the way it went [m].
 struct Ride {
   MotionResult result;
   double ratio = 0.0, way = 0.0, speed = 0.0;
@@ -279,9 +281,9 @@ TEST(WirePairState, GoingOnFromACheckpointGivesTheSameBits) {
   EXPECT_EQ(test::expect_same_bits_from_checkpoints(motion, options).size(), 3u);
 }
 
-/// The three slack wires of a snare about a free shaft: each from a fixed ring to a turning one below it, along the outside at the
-/// start. The turning ring carries its ends round by `turn` [rad] in `time` [s], until the wires lie across the middle, each
-/// over the next one and under the one before.
+/// The three slack wires of a snare about a free shaft: each from a fixed ring to a turning one below it,
+/// along the outside at the start. The turning ring carries its ends round by `turn` [rad] in `time` [s],
+/// until the wires lie across the middle, each over the next one and under the one before.
 Motion snare_about_a_shaft(double turn, double time, int elements) {
   constexpr double ring = 0.08, apart = 8e-3, radius = 1e-3, shaft = 0.008, open = 100.0 * degree;
   Motion motion;

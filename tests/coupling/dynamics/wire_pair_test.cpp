@@ -98,7 +98,8 @@ MotionFriction soft_friction() {
   return f;
 }
 
-// A wire that crosses another under an angle: g = -d + c s^2/2, c = sin^2(angle)/D, so F = 4/3 k sqrt(2/c) d^(3/2), at every place.
+// A wire that crosses another under an angle: g = -d + c s^2/2, c = sin^2(angle)/D, so F = 4/3 k sqrt(2/c)
+// d^(3/2), at every place.
 TEST(WirePair, WiresThatCrossMeetTheForceOfTheirDepth) {
   for (const double angle : {90.0, 30.0, 10.0}) {
     for (const double depth : {1e-7, 1e-6}) {
@@ -124,7 +125,8 @@ TEST(WirePair, ParallelWiresBearTheFoundationsLoadAlongTheirLength) {
     Motion motion = crossed_wires(0.0, -depth, elements);
     motion.wire_pairs[0].foundation.modulus = modulus;
     const WirePairPart::Sums s = Pair(motion).sums();
-    // Either wire ends 0.72 mm before the other; the sphere at its end bears over some sqrt(2 D d) = 60 um more.
+    // Either wire ends 0.72 mm before the other; the sphere at its end bears over some sqrt(2 D d) = 60 um
+    // more.
     const double length = 0.2 - 0.6 * 0.0012;
     EXPECT_NEAR(s.force.y(), modulus * depth * length, 5e-4 * modulus * depth * length) << elements;
   }
@@ -146,7 +148,8 @@ TEST(WirePair, JacobianMatchesDifferences) {
       }
       const test::DerivativeError error = test::compare_dae_jacobian(
           p.system, p.y, p.rate, Eigen::MatrixXd::Identity(p.y.size(), p.y.size()), 1e-4);
-      // Gauss's rule is exact for a gap that is a parabola: what is left is the share of the third order in it.
+      // Gauss's rule is exact for a gap that is a parabola: what is left is the share of the third order in
+      // it.
       EXPECT_LT(error.relative, 1e-5) << error.worst;
     }
   }
@@ -195,7 +198,8 @@ TEST(WirePair, ForcesAreSmoothAsTheCrossingGoesOverVertices) {
   }
 }
 
-// Both straight wires turned about the line through their nearest points, and moved, as one body do not slide on each other.
+// Both straight wires turned about the line through their nearest points, and moved, as one body do not slide
+// on each other.
 TEST(WirePair, ARigidMotionOfBothIsNoSliding) {
   Motion motion = crossed_wires(50.0 * degree, -1e-6, 8);
   motion.wire_pairs[0].friction = soft_friction();

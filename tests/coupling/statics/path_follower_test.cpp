@@ -107,7 +107,8 @@ TEST(PathFollower, EndsWhereThePathEnds) {
   EXPECT_EQ(path.asked.size(), 1u);
 }
 
-/// y' = rate(t, y) by the implicit method of first order, with a linear rate: y follows cos t, behind by what has been.
+/// y' = rate(t, y) by the implicit method of first order, with a linear rate: y follows cos t, behind by what
+/// has been.
 class LaggingPath final : public RememberingPath {
  public:
   [[nodiscard]] double parameter() const override { return at; }
@@ -170,7 +171,8 @@ TEST(OwnSteps, FollowTheirErrorEstimate) {
   EXPECT_EQ(ends.back(), 3.0);
   EXPECT_TRUE(std::is_sorted(ends.begin(), ends.end()));
   EXPECT_LT(coarse, 1e-3);  // a handful of errors of 1e-4 that decay
-  // The error of a step goes with the square of its length, that of the path with the length: a tenth for a hundredth.
+  // The error of a step goes with the square of its length, that of the path with the length: a tenth for a
+  // hundredth.
   EXPECT_NEAR(error_of_own_steps(1e-6) / coarse, 0.1, 0.05);
 }
 

@@ -51,7 +51,8 @@ TEST(PushAccuracy, ExtrapolatedForceMeetsTheContinuousWire) {
         EXPECT_NEAR(result.curve.points[i].tension_left, reference[i].tension_left,
                     1e-5 * std::abs(reference[i].tension_left) + 1e-4);
         EXPECT_NEAR(result.curve.points[i].contact_coordinate, reference[i].contact_begin, 1e-7);
-        // It is an estimate, not a bound: right within a factor of two here, where both are below 1e-6 of the force.
+        // It is an estimate, not a bound: right within a factor of two here, where both are below 1e-6 of the
+        // force.
         EXPECT_LE(std::abs(result.curve.points[i].force - reference[i].force),
                   2.0 * result.discretisation_error[i] + 1e-6);
       }
@@ -136,8 +137,8 @@ TEST(PushAccuracy, NaturalCurvatureDoesNothingBetweenRigidClamps) {
   test.travel = {1.0 * mm, 2.0 * mm};
   const double straight = last_force(solve_push(test, mesh(64)));
   test.wire.natural_curvature = 3.0;
-  // The turning angles between rigid clamps sum to zero, and so does the work of a uniform moment, but for the third
-  // order of 2 tan(phi/2) in phi.
+  // The turning angles between rigid clamps sum to zero, and so does the work of a uniform moment, but for
+  // the third order of 2 tan(phi/2) in phi.
   EXPECT_NEAR(last_force(solve_push(test, mesh(64))), straight, 1e-3 * straight);
   EXPECT_NEAR(last_force(solve_push(test, mesh(256))),
               last_force(solve_push(
@@ -150,7 +151,8 @@ TEST(PushAccuracy, NaturalCurvatureDoesNothingBetweenRigidClamps) {
               6e-5 * straight);
 }
 
-// A thick pusher with hardly any friction on a soft wire: the path on the coarser meshes stops at once, and the finest mesh is not extrapolated.
+// A thick pusher with hardly any friction on a soft wire: the path on the coarser meshes stops at once, and
+// the finest mesh is not extrapolated.
 TEST(PushAccuracy, NoErrorIsNoErrorOfZero) {
   PushProblem test = declared_wire(128.6 * mm, 5.0 * mm);
   test.wire.length = 200.0 * mm;
@@ -200,7 +202,8 @@ TEST(PushAccuracy, NoPointIsOutOfBalance) {
     EXPECT_LE(p.imbalance, 1e-3 * std::max(std::abs(p.reaction_across_left), std::abs(p.force)) + 1e-6);
 }
 
-// With hardly any friction the way back is the way there; the supports let the wire slide before the pusher is said to leave it.
+// With hardly any friction the way back is the way there; the supports let the wire slide before the pusher
+// is said to leave it.
 TEST(PushAccuracy, SupportsSlideOnTheWayBack) {
   PushProblem test = declared_wire(39.0 * mm, 0.0);
   test.wire.length = 80.0 * mm;

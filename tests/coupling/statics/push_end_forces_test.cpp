@@ -1,5 +1,5 @@
-// Axial forces at the ends of a wire and the reactions of its mounts, against closed forms and solvers that share no code
-// with the rod.
+// Axial forces at the ends of a wire and the reactions of its mounts, against closed forms and solvers that
+// share no code with the rod.
 
 #include "tests/support/declared_wire.hpp"
 
@@ -53,8 +53,9 @@ TEST(PushEndForces, TautStringHasTheTensionOfItsStretch) {
   }
 }
 
-/// End forces n(0), n(L) of the elastic catenary under the weight w per unstretched length (Irvine 1981, ch. 1), from the
-/// origin to (span, 0): r(L) = integral of n/|n| + n/EA with n(s) = n(0) - w s, found by Newton's method.
+/// End forces n(0), n(L) of the elastic catenary under the weight w per unstretched length (Irvine 1981, ch.
+/// 1), from the origin to (span, 0): r(L) = integral of n/|n| + n/EA with n(s) = n(0) - w s, found by
+/// Newton's method.
 std::array<Vector2d, 2> catenary(const Vector2d& weight, double length, double span, double ea) {
   const double w = weight.norm();
   const Vector2d u = weight / w;
@@ -85,7 +86,8 @@ TEST(PushEndForces, HangingRopeIsTheElasticCatenary) {
   struct Case {
     double ea, tilt;
   };
-  // A rope of steel and a soft one, the second 5 % longer by its weight; level, and with the right hook higher.
+  // A rope of steel and a soft one, the second 5 % longer by its weight; level, and with the right hook
+  // higher.
   for (const Case& c : {Case{1e6, 0.0}, Case{5.0, 0.0}, Case{5.0, 0.3}, Case{1e4, -0.2}}) {
     PushProblem test = declared_wire(500.0 * mm, 1.0 * mm);
     test.wire.construction = wire::Construction::strand;
@@ -133,7 +135,8 @@ TEST(PushEndForces, PinnedElasticaAgreesWithMultipleShooting) {
   }
 }
 
-// Clamps that turn and give, weight in both directions, natural curvature, friction: collocation of the continuous wire.
+// Clamps that turn and give, weight in both directions, natural curvature, friction: collocation of the
+// continuous wire.
 TEST(PushEndForces, MountsThatGiveAgreeWithCollocation) {
   for (const double radius : {0.0, 6.0 * mm}) {
     PushProblem test = declared_wire(65.0 * mm, radius);
@@ -161,8 +164,8 @@ TEST(PushEndForces, MountsThatGiveAgreeWithCollocation) {
     const ExtrapolatedCurve push = solve_push_extrapolated(test, PushOptions{});
     for (std::size_t i = 0; i < reference.size(); ++i) {
       const PushPoint& p = push.curve.points[i];
-      // The mounts turn by some 0.05: their law errs by the third power of it, 1e-4 of the moment. (Along the clamps'
-      // direction the tension would be 5 % of the transverse force wrong.)
+      // The mounts turn by some 0.05: their law errs by the third power of it, 1e-4 of the moment. (Along the
+      // clamps' direction the tension would be 5 % of the transverse force wrong.)
       const double allowed = 1e-3 * (reference[i].force + std::abs(reference[i].tension_left));
       EXPECT_NEAR(p.force, reference[i].force, allowed);
       EXPECT_NEAR(p.tension_left, reference[i].tension_left, allowed);
@@ -226,14 +229,15 @@ TEST(PushEndForces, ReactionsBalancePusherAndWeight) {
       const Vector3d weight = mass * Vector3d(test.gravity[0], test.gravity[1], test.gravity[2]);
       const double largest =
           std::abs(p.force) + std::abs(p.reaction_along_left) + std::abs(p.reaction_across_left);
-      // Newton's tolerance of 1e-10 and rounding, on the forces of every vertex and with the extrapolation's weights.
+      // Newton's tolerance of 1e-10 and rounding, on the forces of every vertex and with the extrapolation's
+      // weights.
       EXPECT_LE((sum + weight).norm(), 1e-8 * largest) << p.travel;
     }
   }
 }
 
-// A limp wire between clamps is turned by the clamps only within sqrt(EI/T): there the axial force is the share of the
-// string's force along the clamp, and the wire beyond bears all of it.
+// A limp wire between clamps is turned by the clamps only within sqrt(EI/T): there the axial force is the
+// share of the string's force along the clamp, and the wire beyond bears all of it.
 TEST(PushEndForces, StressIsThatOfTheLargestTension) {
   PushProblem test = string(50.0 * mm);
   test.mount.kind = wire::MountKind::clamped;
@@ -249,7 +253,8 @@ TEST(PushEndForces, StressIsThatOfTheLargestTension) {
   EXPECT_NEAR(largest_stress(test.wire, curve.points), tension / area, 2e-3 * tension / area);
 }
 
-// Friction of supports pulls the ends of a wire that is drawn in over them: mu times the normal force of a support.
+// Friction of supports pulls the ends of a wire that is drawn in over them: mu times the normal force of a
+// support.
 TEST(PushEndForces, FrictionOfSupportsIsTheTensionThere) {
   PushProblem test = declared_wire(87.5 * mm, 6.0 * mm);
   test.mount.kind = wire::MountKind::supports;
@@ -259,7 +264,8 @@ TEST(PushEndForces, FrictionOfSupportsIsTheTensionThere) {
   const PushCurve curve = solve_push(test, mesh(128));
   ASSERT_TRUE(curve.report.usable()) << curve.report.message;
   const PushPoint& p = curve.points.back();
-  // Half of the force each; the supports' normals lean by 3 s/l times the travel, 0.07, so that normal and force differ by 2 %.
+  // Half of the force each; the supports' normals lean by 3 s/l times the travel, 0.07, so that normal and
+  // force differ by 2 %.
   EXPECT_NEAR(std::abs(p.tension_left), 0.2 * 0.5 * p.force, 0.03 * 0.2 * 0.5 * p.force);
   EXPECT_NEAR(p.tension_left, p.tension_right, 1e-6 * p.force);
 }

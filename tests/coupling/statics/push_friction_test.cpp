@@ -126,7 +126,8 @@ TEST(SlippingMount, CapsTheTensionAndBalancesTheEnergy) {
   ASSERT_TRUE(curve.report.usable()) << curve.report.message;
   EXPECT_TRUE(has(curve, PushEvent::Kind::mount_slips));
   for (const PushPoint& p : curve.points) {
-    // The driving force dE/dS is the tension and the strain energy of bending at the clamp, M^2/2EI, a few newton.
+    // The driving force dE/dS is the tension and the strain energy of bending at the clamp, M^2/2EI, a few
+    // newton.
     EXPECT_LE(std::abs(p.tension_left), 80.0 + 10.0);
   }
   const double work = loop_area(curve);

@@ -27,8 +27,8 @@ double stiffness(const PushCurve& curve, std::size_t from, std::size_t to) {
          (curve.points[to].travel - curve.points[from].travel);
 }
 
-// Small deflections: F = 48 EI w / l^3 while the strands stick, with EI + extra; the first slip, under the pusher,
-// comes at F l / 4 = (EI + extra) slip curvature.
+// Small deflections: F = 48 EI w / l^3 while the strands stick, with EI + extra; the first slip, under the
+// pusher, comes at F l / 4 = (EI + extra) slip curvature.
 TEST(PushHysteresis, StrandsStickAndSlipInThreePointBending) {
   const double span = 100.0 * mm;
   PushProblem test = three_point_bending(span, 110.0 * mm);
@@ -57,7 +57,8 @@ TEST(PushHysteresis, StrandsStickAndSlipInThreePointBending) {
             (curve.points[i].travel - curve.points[i - 1].travel);
   }
   EXPECT_GT(work, 0.0);
-  // What has slipped keeps the wire bent: the pusher leaves it on the way back, and nothing moves it along its supports.
+  // What has slipped keeps the wire bent: the pusher leaves it on the way back, and nothing moves it along
+  // its supports.
   const PushPoint& last = curve.points[360];
   EXPECT_FALSE(last.in_contact);
   EXPECT_NEAR(last.force, 0.0, 1e-12);
@@ -65,7 +66,8 @@ TEST(PushHysteresis, StrandsStickAndSlipInThreePointBending) {
   EXPECT_LT(last.imbalance, 1e-6);
 }
 
-// Yielding in tension: beyond the yield strain the tangent of a straight string's force falls to that of the hardening.
+// Yielding in tension: beyond the yield strain the tangent of a straight string's force falls to that of the
+// hardening.
 TEST(PushHysteresis, TautWireYieldsAndStaysLonger) {
   PushProblem test = declared_wire(87.5 * mm, 0.0);
   test.wire.length = test.mount.span;

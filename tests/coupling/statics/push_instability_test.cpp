@@ -54,8 +54,9 @@ TEST(InwardPush, StableBranchIsTakenOnRequest) {
   }
 }
 
-// A clamped leaf spring pressed at mid-span by an edge without friction, on the stable branch at 1 mm, from a shooting solution of the
-// planar extensible elastica. The branch may lean to either side; all meshes take the same one, and what is extrapolated is not mixed of both.
+// A clamped leaf spring pressed at mid-span by an edge without friction, on the stable branch at 1 mm, from a
+// shooting solution of the planar extensible elastica. The branch may lean to either side; all meshes take
+// the same one, and what is extrapolated is not mixed of both.
 TEST(InwardPush, BranchOfALeafSpringIsThatOfTheElasticaOnEveryMesh) {
   PushProblem test = inward(50.0 * mm, 1.0 * mm, 10);
   test.wire = {.diameter = 0.5 * mm,
@@ -91,8 +92,8 @@ TEST(InwardPush, SnapsToTheMirroredShapeAndIsTouchedThere) {
       return e.kind == PushEvent::Kind::touch && e.travel >= snap->travel;
     });
     ASSERT_NE(touch, curve.events.end());
-    // The mirrored wire hangs as far below the chord as it stood above: twice the height, found to the mesh's error
-    // (the contact vertex, and so the mesh, differs between the two shapes).
+    // The mirrored wire hangs as far below the chord as it stood above: twice the height, found to the mesh's
+    // error (the contact vertex, and so the mesh, differs between the two shapes).
     EXPECT_NEAR(touch->travel, 2.0 * curve.natural_height, 2e-3 * curve.natural_height);
   }
 }

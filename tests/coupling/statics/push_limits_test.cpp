@@ -65,8 +65,8 @@ std::vector<double> forces_of(const PushProblem& test, int elements = 128) {
   return forces;
 }
 
-// The difference to rigid mounts falls as the compliance, and from 1e11 N/m on the last places of the right mount's coordinate carry
-// more than a millinewton.
+// The difference to rigid mounts falls as the compliance, and from 1e11 N/m on the last places of the right
+// mount's coordinate carry more than a millinewton.
 TEST(PushLimits, StiffMountsGiveTheRigidAnswer) {
   for (const wire::MountKind kind : {wire::MountKind::clamped, wire::MountKind::pinned}) {
     for (const double tilt : {0.0, 0.1}) {
@@ -82,7 +82,8 @@ TEST(PushLimits, StiffMountsGiveTheRigidAnswer) {
         const std::vector<double> forces = forces_of(test);
         ASSERT_EQ(forces.size(), 4u) << stiffness;
         const double difference = (rigid[3] - forces[3]) / rigid[3];
-        // Newton's tolerance and the coordinates' round-off: 1e-8 of forces that are differences of larger ones.
+        // Newton's tolerance and the coordinates' round-off: 1e-8 of forces that are differences of larger
+        // ones.
         if (stiffness > 1e8 && stiffness < 1e16)
           EXPECT_NEAR(difference, 0.1 * before, 0.05 * 0.1 * before + 1e-8) << stiffness;
         if (stiffness > 1e16) EXPECT_NEAR(difference, 0.0, 1e-8);

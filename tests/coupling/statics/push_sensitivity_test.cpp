@@ -50,8 +50,8 @@ std::vector<PushVariation> variations(const std::vector<Number>& numbers) {
   return result;
 }
 
-// Differences of whole curves have a truncation error h^2 and, with friction, jumps of the solver's own tolerance
-// where events fall: `tolerance` of the largest derivative along the curve.
+// Differences of whole curves have a truncation error h^2 and, with friction, jumps of the solver's own
+// tolerance where events fall: `tolerance` of the largest derivative along the curve.
 void expect_derivatives(const PushProblem& test, const std::vector<Number>& all, double tolerance) {
   PushOptions options;
   options.elements = 64;
@@ -136,7 +136,8 @@ TEST(PushSensitivity, GoAlongWithASlippingMount) {
   test.mount.slip_tension = 31.0;  // below the compression of the loose wire: it slips at first touch
   test.travel = forth_and_back(0.2 * mm, 2.0 * mm, 9);
   std::vector<Number> all = numbers(test);
-  // Smaller than elsewhere: the mount slips 0.003 mm before the reading at 1 mm, 0.05 mm earlier for a newton less.
+  // Smaller than elsewhere: the mount slips 0.003 mm before the reading at 1 mm, 0.05 mm earlier for a newton
+  // less.
   all.push_back({"slip", {[](PushProblem& t, double a) { *t.mount.slip_tension += a; }, 1e-2, 0.0}, 0.01});
   expect_derivatives(test, all, 1e-3);
 }
@@ -238,8 +239,8 @@ TEST(PushSensitivity, OfAWireOnSupports) {
   expect_derivatives(test, all, 1e-5);
 }
 
-// First order in a relaxation time the viscous force is the rate times this form; for a straight stretched wire whose
-// bending is negligible it is EA times the square of d strain / d travel, in closed form.
+// First order in a relaxation time the viscous force is the rate times this form; for a straight stretched
+// wire whose bending is negligible it is EA times the square of d strain / d travel, in closed form.
 TEST(PushSensitivity, RateFormOfAStretchedString) {
   PushProblem test = declared_wire(87.5 * mm, 0.0);
   test.wire.length = test.mount.span;

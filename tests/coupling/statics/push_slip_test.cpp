@@ -1,5 +1,6 @@
-// Mounts that slip: at either end and at both, the wire feeding through or the mount sliding with it; and strands that
-// slide one share after the other. The oracle is the continuous wire by collocation, which shares no code with the rod.
+// Mounts that slip: at either end and at both, the wire feeding through or the mount sliding with it; and
+// strands that slide one share after the other. The oracle is the continuous wire by collocation, which
+// shares no code with the rod.
 
 #include "coupling/statics/push_solver.hpp"
 #include "tests/support/declared_wire.hpp"
@@ -80,8 +81,8 @@ TEST_P(SlipOfAMount, CapsTheForceAndBalancesTheEnergy) {
       EXPECT_LT(p.imbalance, 1e-6) << "at a travel of " << p.travel / mm << " mm";
     }
   }
-  // Without friction at the pusher one mount that slips holds the tension of the whole wire, but for the bending at the
-  // clamp and the pusher's lean.
+  // Without friction at the pusher one mount that slips holds the tension of the whole wire, but for the
+  // bending at the clamp and the pusher's lean.
   EXPECT_LT(highest, 1.2 * limit);
   const double dissipated = curve.points.back().dissipated;
   EXPECT_GT(dissipated, 1e-3);
@@ -119,8 +120,8 @@ TEST(SlipOfAMount, IsThatOfTheContinuousWire) {
   }
 }
 
-// The driving force of feeding, tension and M^2/2EI, is the same all along a wire that slides freely over the pusher: the
-// forces do not tell through which mount the wire comes in.
+// The driving force of feeding, tension and M^2/2EI, is the same all along a wire that slides freely over the
+// pusher: the forces do not tell through which mount the wire comes in.
 TEST(SlipOfAMount, OfAFreeWireIsTheSameThroughEitherMount) {
   const PushCurve left = solve_push(slipping(MountSlip::feeds, SlipPlace::left), mesh(128));
   for (const SlipPlace place : {SlipPlace::right, SlipPlace::both}) {
@@ -133,8 +134,8 @@ TEST(SlipOfAMount, OfAFreeWireIsTheSameThroughEitherMount) {
   }
 }
 
-// Of log-uniform thresholds between a and b: M = EI k + EI_x k up to a, (k/2B) [k - a + k ln(b/k)] between, (b - a)/2B beyond,
-// with 2B = ln(b/a).
+// Of log-uniform thresholds between a and b: M = EI k + EI_x k up to a, (k/2B) [k - a + k ln(b/k)] between,
+// (b - a)/2B beyond, with 2B = ln(b/a).
 TEST(Strands, SpreadThresholdsAreTheirDistribution) {
   const wire::StrandFriction strands{0.03, 1.2, 2.0};
   const std::vector<wire::SliderElement> sliders = wire::strand_sliders(strands);

@@ -1,4 +1,5 @@
-// A push takes steps of its own: its forces do not depend on the points that are asked for, and err by what is stated.
+// A push takes steps of its own: its forces do not depend on the points that are asked for, and err by what
+// is stated.
 
 #include "coupling/statics/push_solver.hpp"
 #include "tests/support/declared_wire.hpp"
@@ -162,8 +163,8 @@ TEST_P(PointsAskedFor, DoNotChangeTheForces) {
   ASSERT_TRUE(few.curve.report.usable()) << few.curve.report.message;
   double peak = 0.0;
   for (const PushPoint& p : few.curve.points) peak = std::max(peak, std::abs(p.force));
-  // Two solutions by Newton's method agree to 1e-8 of the forces in the wire, some 1e-7 of the peak of soft curves. That is
-  // far below the error that the curve states.
+  // Two solutions by Newton's method agree to 1e-8 of the forces in the wire, some 1e-7 of the peak of soft
+  // curves. That is far below the error that the curve states.
   const double tolerance = 1e-7 * peak;
   EXPECT_LT(tolerance, *std::max_element(few.discretisation_error.begin(), few.discretisation_error.end()));
   for (const std::vector<double>& travel :
@@ -205,7 +206,8 @@ TEST_P(PointsAskedFor, HaveTheSameForcesInGivenSteps) {
   double peak = 0.0;
   for (const PushPoint& p : own.points) peak = std::max(peak, std::abs(p.force));
   for (std::size_t i = 0; i < own.points.size(); ++i) {
-    // Newton's method, and events that are located from another beginning: to 1e-9 of the span, 1e-6 of these forces.
+    // Newton's method, and events that are located from another beginning: to 1e-9 of the span, 1e-6 of these
+    // forces.
     EXPECT_NEAR(own.points[i].force, given.points[i].force, 2e-6 * peak)
         << own.points[i].travel / mm << " mm";
   }
@@ -236,8 +238,8 @@ TEST(PathError, IsAtLeastTheDistanceToThePathOfShortSteps) {
       stated = std::max(stated, curve.discretisation_error[i]);
     }
     EXPECT_LT(worst, 1e-3 * peak) << one.name;
-    // An estimate from a mesh of a quarter of the edges, of a curve with kinks, at the points asked for: within a factor of four. Events are
-    // located to 1e-9 of the span, which is 1e-6 of these forces.
+    // An estimate from a mesh of a quarter of the edges, of a curve with kinks, at the points asked for:
+    // within a factor of four. Events are located to 1e-9 of the span, which is 1e-6 of these forces.
     EXPECT_LT(worst, 4.0 * stated + 2e-6 * peak) << one.name;
   }
 }
@@ -249,8 +251,8 @@ TEST(PathError, IsNoneWithoutAMemory) {
     EXPECT_EQ(error, 0.0);
 }
 
-// Swung to the height y at the pusher, an arch of the height a (a_p at the pusher) that its weight W pulls across has
-// sin(angle) = y / a_p; with the moments about the chord
+// Swung to the height y at the pusher, an arch of the height a (a_p at the pusher) that its weight W pulls
+// across has sin(angle) = y / a_p; with the moments about the chord
 //   F = W/2 (a / a_p) tan(angle),   y = a/2 (1 - cos 2 pi x/l).
 TEST(WeightAcross, PushBeginsWhereTheWireHangs) {
   PushProblem test = hanging(0.0);
@@ -272,8 +274,8 @@ TEST(WeightAcross, PushBeginsWhereTheWireHangs) {
   }
 }
 
-// A mount that does not hold the loose wire lets it out at first touch: the pusher is pressed from there on, and the force
-// that drives the mount is its limit.
+// A mount that does not hold the loose wire lets it out at first touch: the pusher is pressed from there on,
+// and the force that drives the mount is its limit.
 TEST(MountThatDoesNotHold, SlipsAtFirstTouch) {
   PushProblem test = not_held();
   test.travel = {0.0, 1.0 * mm};

@@ -61,7 +61,8 @@ TEST(SpatialPush, WorkOfThePusherIsTheWiresEnergy) {
     work += (i == 0 || i == n ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0)) * curve.points[i].force * 2.0 * mm / 40 / 3.0;
   }
   const double stored = curve.points.back().energy - curve.points.front().energy;
-  // The contact is tangent by the C1 curve, not by the discrete energy: second order in the mesh, 1.5e-4 at 128 edges.
+  // The contact is tangent by the C1 curve, not by the discrete energy: second order in the mesh, 1.5e-4 at
+  // 128 edges.
   EXPECT_NEAR(work, stored, 3e-4 * stored);
 }
 

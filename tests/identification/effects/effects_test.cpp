@@ -1,4 +1,5 @@
-// Every effect: what holds for all of them (EachEffect), then facts that follow from mechanics, whatever the data.
+// Every effect: what holds for all of them (EachEffect), then facts that follow from mechanics, whatever the
+// data.
 
 #include "identification/effects/catalogue.hpp"
 #include "identification/fitting/least_squares.hpp"
@@ -150,12 +151,13 @@ TEST_P(EachEffect, DerivativeMatchesDifferences) {
     difference = (force(h) - force(-h)) / (2.0 * h);
   }
   ASSERT_GT(difference.norm(), 0.0);
-  // Derivatives carry the mesh's error (see score.cpp), whatever the step: extrapolated from 64 edges 5 mN for a
-  // change of EI or EA by its own size, which is 3e-3 of what EA does here; 24 mN on that mesh alone.
+  // Derivatives carry the mesh's error (see score.cpp), whatever the step: extrapolated from 64 edges 5 mN
+  // for a change of EI or EA by its own size, which is 3e-3 of what EA does here; 24 mN on that mesh alone.
   EXPECT_LT((here.by[0].col(0) - difference).norm(), 5e-3 * difference.norm());
 }
 
-// Where the mounts are rigid their compliance is differentiated as such, elsewhere as any number: both must hold.
+// Where the mounts are rigid their compliance is differentiated as such, elsewhere as any number: both must
+// hold.
 TEST(MountAxialCompliance, DerivativeAwayFromRigidMountsMatchesDifferences) {
   const Parameter& p = parameters().at("mount_axial_compliance.compliance_m_N");
   const Model model({series_at(40.0 * mm, 175.0 * mm, 15)}, few_edges());
@@ -171,8 +173,8 @@ TEST(MountAxialCompliance, DerivativeAwayFromRigidMountsMatchesDifferences) {
   EXPECT_LT((here.by[0].col(0) - difference).norm(), 5e-3 * difference.norm());
 }
 
-// Of two mounts that give alike each gives by itself; and a push at 40 mm of which the left one gives is the mirror image of one at
-// 135 mm of which the right one does.
+// Of two mounts that give alike each gives by itself; and a push at 40 mm of which the left one gives is the
+// mirror image of one at 135 mm of which the right one does.
 TEST(MountsByThemselves, TogetherAreBothAndMirrorEachOther) {
   struct Pair {
     const char* both;
@@ -237,7 +239,8 @@ TEST(Effects, GainLiesInTheSpanOfTheStiffnesses) {
   EXPECT_LT(Projection(base).without(gain).norm(), 1e-5 * gain.norm());
 }
 
-// Where the wire is a string, its stretch and that of the mounts add up, and a gain is nothing else: one class.
+// Where the wire is a string, its stretch and that of the mounts add up, and a gain is nothing else: one
+// class.
 TEST(Effects, AxialStiffnessMountComplianceAndGainAreAlikeForAString) {
   std::vector<Series> taut;
   for (const double position : {40.0 * mm, 65.0 * mm, 90.0 * mm}) {
@@ -251,8 +254,9 @@ TEST(Effects, AxialStiffnessMountComplianceAndGainAreAlikeForAString) {
   EXPECT_GT(std::abs(cosine(axial, column(model, data, "reading.force_gain"))), 0.999);
 }
 
-// A stretched string hands half of its weight to the pusher, whatever the travel: a force offset at one position. It
-// also sags before the touch, from which the travel counts: a zero of the travel, which the fit must be free to move.
+// A stretched string hands half of its weight to the pusher, whatever the travel: a force offset at one
+// position. It also sags before the touch, from which the travel counts: a zero of the travel, which the fit
+// must be free to move.
 TEST(Effects, GravityIsAForceOffsetAtOnePosition) {
   std::vector<Series> taut{series_at(65.0 * mm, 176.4 * mm, 15)};
   taut.front().test.wire.bending_stiffness_override = 1e-4;

@@ -110,8 +110,8 @@ TEST(Data, ErrorsOfPlacesAreWhitenedWithTheNoise) {
   EXPECT_LT((w * covariance * w.transpose() - unit).norm(), 1e-11);  // roundings
 }
 
-// The same from a regression in which every place is a number of its own with one reading more, that of its tolerance:
-// chi2, the covariance of the numbers, the places and their errors.
+// The same from a regression in which every place is a number of its own with one reading more, that of its
+// tolerance: chi2, the covariance of the numbers, the places and their errors.
 TEST(Data, PlacesAreNumbersWithATolerance) {
   ThreeRecords r;
   const MatrixXd j = r.white([&](std::size_t k) { return r.fit.evaluation.by[k]; }, 2);

@@ -356,7 +356,8 @@ TEST(QuadraticLaw, ScatterIsThatOfReadingsWithThisR2) {
 }
 
 TEST(WireSpecification, StiffnessOfTheSolidRoundSection) {
-  // Stated beside the published experiment: EI = 0.04796 N m^2, EA = 341.06 kN; half a unit of the last digit.
+  // Stated beside the published experiment: EI = 0.04796 N m^2, EA = 341.06 kN; half a unit of the last
+  // digit.
   const wire::WireSpecification wire =
       parse_experiment("x.toml", valid_experiment, parameters()).series[0].test.wire;
   EXPECT_NEAR(wire.bending_stiffness(), 0.04796, 0.5e-5);

@@ -21,7 +21,8 @@ MatrixXd random_columns(Index rows, Index columns, unsigned seed) {
   return m;
 }
 
-// Readings g(a E + b A): the derivative by ln g is the sum of those by ln E and ln A, so (-1, 1, 1) changes nothing.
+// Readings g(a E + b A): the derivative by ln g is the sum of those by ln E and ln A, so (-1, 1, 1) changes
+// nothing.
 TEST(Identifiability, FindsTheGainBesideTwoStiffnesses) {
   MatrixXd j(20, 3);
   j.rightCols(2) = random_columns(20, 2, 1) * Eigen::Vector2d(300.0, 4.0).asDiagonal();

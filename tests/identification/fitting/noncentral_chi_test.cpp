@@ -13,9 +13,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Of one component |v + e| is |N(m, 1)|. Below 280 with m = 300: log of the normal distribution at -20, by Mills' ratio
-// phi(20) / 20 (1 - 1/400 + 3/160000 - ...) (Abramowitz and Stegun 26.2.12), far below what P itself can hold to any
-// digit of log(1 - P).
+// Of one component |v + e| is |N(m, 1)|. Below 280 with m = 300: log of the normal distribution at -20, by
+// Mills' ratio phi(20) / 20 (1 - 1/400 + 3/160000 - ...) (Abramowitz and Stegun 26.2.12), far below what P
+// itself can hold to any digit of log(1 - P).
 TEST(NoncentralChi, OneComponentIsANormalVariable) {
   const auto upper = [](double x) { return 0.5 * std::erfc(x / std::numbers::sqrt2); };
   EXPECT_NEAR(length_probability(0.5, 1.25, 1.0, 0.0, 0.0).log, std::log(2.0 * (upper(0.5) - upper(1.25))),

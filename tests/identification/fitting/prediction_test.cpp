@@ -126,7 +126,8 @@ TEST(Model, SettingsMoveEverySeriesFromItsOwnDeclaration) {
   EXPECT_EQ(parameters().find("series[a].nothing"), nullptr);
 }
 
-// Numbers of the record, whose derivatives are written by hand; those of the test are compared in tests/coupling.
+// Numbers of the record, whose derivatives are written by hand; those of the test are compared in
+// tests/coupling.
 TEST(Model, DerivativesOfTheRecordMatchDifferences) {
   Series s = series_of(test::declared_wire(65.0 * mm, 6.0 * mm), 0.0, 0.0, 1);
   for (std::size_t i = 0; i < s.readings->displacement.size(); ++i)
@@ -221,7 +222,8 @@ TEST(LeastSquares, ProfileOfANearlyLinearNumberIsItsStandardError) {
   EXPECT_NEAR(*interval.upper - *interval.lower, 2.0 * 1.96 * deviation, 0.1 * 3.92 * deviation);
 }
 
-// Where the numbers are held at an end and all others fitted anew, chi2 has risen by what was asked, with much noise as with little.
+// Where the numbers are held at an end and all others fitted anew, chi2 has risen by what was asked, with
+// much noise as with little.
 TEST(LeastSquares, AtTheEndsOfAProfileAFitOfTheOthersHasRisenByWhatWasAsked) {
   constexpr double rise = 3.84;
   int ends = 0;

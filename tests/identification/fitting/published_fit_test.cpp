@@ -26,7 +26,8 @@ TEST(PublishedFit, TheBasisIsOrthonormalAndHoldsTheQuadratics) {
   EXPECT_LT((y - q.transpose() * (q * y)).norm(), 1e-13 * y.norm());
 }
 
-// The probability of a printed R2, given the coefficients, is how often readings of the curve with noise give that R2.
+// The probability of a printed R2, given the coefficients, is how often readings of the curve with noise give
+// that R2.
 TEST(PublishedFit, TheProbabilityOfAPrintedR2IsItsFrequency) {
   constexpr int readings = 12;
   constexpr int sets = 4000;
@@ -68,7 +69,8 @@ TEST(PublishedFit, LinearCurvesKeepLengths) {
               1e-12 * moved.norm());
 }
 
-// Least squares on rows with a known standard deviation is maximum likelihood: squares of rows against the likelihood itself.
+// Least squares on rows with a known standard deviation is maximum likelihood: squares of rows against the
+// likelihood itself.
 TEST(PublishedFit, RowsHaveTheLikelihoodAsTheirSquares) {
   constexpr int readings = 12;
   const LinearWire wire(readings);
@@ -98,10 +100,10 @@ TEST(PublishedFit, RowsHaveTheLikelihoodAsTheirSquares) {
   }
 }
 
-// By maximum likelihood the variance is a sum of squares over all 3 n readings. The fitted numbers take up nearly nine
-// of them, in the coefficients and in the deviations from the parabolas, and leave some 3 (n - 3): 0.85 of the truth
-// with 20 readings, 0.63 with 8. The limits are four deviations of a mean of 400 variances that scatter by sqrt(2 / (3
-// n)), and one degree of freedom.
+// By maximum likelihood the variance is a sum of squares over all 3 n readings. The fitted numbers take up
+// nearly nine of them, in the coefficients and in the deviations from the parabolas, and leave some 3 (n -
+// 3): 0.85 of the truth with 20 readings, 0.63 with 8. The limits are four deviations of a mean of 400
+// variances that scatter by sqrt(2 / (3 n)), and one degree of freedom.
 TEST(PublishedFit, TheBootstrapFindsTheBiasOfTheVariance) {
   std::mt19937_64 random(7);
   constexpr double sigma = 0.15;
@@ -113,7 +115,8 @@ TEST(PublishedFit, TheBootstrapFindsTheBiasOfTheVariance) {
   }
 }
 
-// Four deviations of the coefficients' scatter at every position, in opposite directions: the statistic has to see it.
+// Four deviations of the coefficients' scatter at every position, in opposite directions: the statistic has
+// to see it.
 TEST(PublishedFit, AWrongCurveIsRejected) {
   std::mt19937_64 random(3);
   constexpr double sigma = 0.15;
@@ -149,8 +152,8 @@ TEST(PublishedFit, PerfectFitsStayFinite) {
   EXPECT_GT(published_bootstrap(deviance, best, 99).p, 0.0);
 }
 
-// P of sets of the model itself: uniform with 20 readings; with fewer 3 to 8 % below 5 %. benchmarks/published_benchmark.cpp has
-// 500 sets of the wire; these are as many as a test can take.
+// P of sets of the model itself: uniform with 20 readings; with fewer 3 to 8 % below 5 %.
+// benchmarks/published_benchmark.cpp has 500 sets of the wire; these are as many as a test can take.
 TEST(SlowPublishedFit, PIsUniform) {
   std::mt19937_64 random(1);
   constexpr int sets = 100;

@@ -28,8 +28,8 @@ inline identification::Series published(const identification::QuadraticLaw& law,
   return s;
 }
 
-/// Three curves that are linear in five numbers: two coefficients for all, and a zero of the travel for each. Forces up
-/// to 15 N, 0.1 N rms of them off the parabola.
+/// Three curves that are linear in five numbers: two coefficients for all, and a zero of the travel for each.
+/// Forces up to 15 N, 0.1 N rms of them off the parabola.
 struct LinearWire {
   std::vector<Eigen::VectorXd> force;
   std::vector<Eigen::MatrixXd> by;
@@ -55,7 +55,8 @@ struct LinearWire {
     }
   }
 
-  /// What is printed of readings with noise of `sigma` [N], compared with these curves plus `off` [N] at half the travel.
+  /// What is printed of readings with noise of `sigma` [N], compared with these curves plus `off` [N] at half
+  /// the travel.
   [[nodiscard]] identification::PublishedDeviance deviance(double sigma, int digits, std::mt19937_64& random,
                                                            double off = 0.0) const {
     std::normal_distribution<double> normal;

@@ -89,7 +89,8 @@ TEST(SerialNoise, FindsSizeAndLength) {
   const LinearRecords records(3000, 0.8, 0.2, random);
   const std::optional<SerialNoise> serial = serial_noise(records.model, records.data, records.fit);
   ASSERT_TRUE(serial);
-  // AR(1): all of it is correlated, exp(-1 / length) = 0.8. The grid's steps are 1.4; 6,000 readings say as much as 667.
+  // AR(1): all of it is correlated, exp(-1 / length) = 0.8. The grid's steps are 1.4; 6,000 readings say as
+  // much as 667.
   EXPECT_GT(serial->smooth, 0.9);
   EXPECT_NEAR(std::log(serial->length * -std::log(0.8)), 0.0, 0.35);
   EXPECT_NEAR(serial->sigma, 0.2, 0.02);

@@ -21,14 +21,16 @@ TEST(Statistics, TailsOfTables) {
   EXPECT_NEAR(normal_quantile(0.025), 1.959964, 1e-5);
 }
 
-// Equal weights are a scaled chi-square; two pairs of weights have the tail (a e^(-x/2a) - b e^(-x/2b))/(a - b).
+// Equal weights are a scaled chi-square; two pairs of weights have the tail (a e^(-x/2a) - b e^(-x/2b))/(a -
+// b).
 TEST(Statistics, TailOfAMixtureOfChiSquares) {
   EXPECT_NEAR(chi_square_mixture_tail(2.0 * 18.307038, Eigen::VectorXd::Constant(10, 2.0)), 0.05, 1e-6);
   const double a = 1.0;
   const double b = 0.2;
   for (const double x : {6.0, 10.0, 14.0}) {
     const double exact = (a * std::exp(-0.5 * x / a) - b * std::exp(-0.5 * x / b)) / (a - b);
-    // Moments are matched, the tail is not: the approximation is good to a tenth of P (Liu, Tang and Zhang, Table 1).
+    // Moments are matched, the tail is not: the approximation is good to a tenth of P (Liu, Tang and Zhang,
+    // Table 1).
     EXPECT_NEAR(chi_square_mixture_tail(x, Eigen::Vector4d(a, a, b, b)), exact, 0.1 * exact) << x;
   }
   EXPECT_EQ(chi_square_mixture_tail(1.0, Eigen::VectorXd::Zero(3)), 1.0);
@@ -69,7 +71,8 @@ TEST(Statistics, HolmByHand) {
   EXPECT_TRUE(holm({}).empty());
 }
 
-// With white noise the p values are uniform: a share of about 5 % is below 0.05; a smooth wave is found at once.
+// With white noise the p values are uniform: a share of about 5 % is below 0.05; a smooth wave is found at
+// once.
 TEST(Statistics, WhitenessTestsHoldTheirLevel) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
@@ -125,8 +128,8 @@ TEST(Noise, SecondDifferencesSeeThroughASmoothMisfit) {
   EXPECT_NEAR(noise.dof, 18.0 / 35.0 * 1998.0, 1.0);
 }
 
-/// Six replicates of a curve to peak travels up to 5 % apart: smooth deviations of `smooth` [N], sums of four waves with
-/// random phases, and independent ones of `white` [N].
+/// Six replicates of a curve to peak travels up to 5 % apart: smooth deviations of `smooth` [N], sums of four
+/// waves with random phases, and independent ones of `white` [N].
 struct Replicates {
   std::vector<Series> series;
   std::vector<Eigen::VectorXd> residuals, computed;
@@ -162,8 +165,8 @@ Replicates replicates_of(unsigned seed, double smooth, double white, int reading
   return result;
 }
 
-// Six draws of a smooth process have some 5 x 3 degrees of freedom: 20 % of sigma is 1.1 deviations of one set's
-// estimate, so that the mean of many sets is looked at beside most of them.
+// Six draws of a smooth process have some 5 x 3 degrees of freedom: 20 % of sigma is 1.1 deviations of one
+// set's estimate, so that the mean of many sets is looked at beside most of them.
 TEST(Noise, OfReplicatesWithPeakTravelsApart) {
   double mean = 0.0;
   double independent = 0.0;

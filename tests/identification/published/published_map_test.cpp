@@ -92,7 +92,8 @@ TEST(CurveLikelihood, IntegratesTheZeroOut) {
   }
 }
 
-// The search for a zero from an estimate finds the one of the search everywhere, and no integral is above its bound.
+// The search for a zero from an estimate finds the one of the search everywhere, and no integral is above its
+// bound.
 TEST(CurveLikelihood, FindsTheZeroBesideAnEstimate) {
   const TouchCurve curve = cubic(2000.0, 4e7);
   for (const int readings : {6, 13, 68}) {
@@ -106,7 +107,8 @@ TEST(CurveLikelihood, FindsTheZeroBesideAnEstimate) {
   }
 }
 
-// The mean of p(numbers | another range and count) / p(numbers | theirs) is one: densities of the printed numbers, whatever they rest on.
+// The mean of p(numbers | another range and count) / p(numbers | theirs) is one: densities of the printed
+// numbers, whatever they rest on.
 TEST(CurveLikelihood, IsADensityOfThePrintedNumbers) {
   const TouchCurve curve = cubic(2000.0, 4e7);
   const double sigma = 0.8;

@@ -23,7 +23,8 @@ BoundedProblem rosenbrock(double upper) {
   return p;
 }
 
-// Rosenbrock's valley from its usual start: the minimum (1, 1), and with x <= 1/2 the bound and y = 1/4, where 1/4 is left.
+// Rosenbrock's valley from its usual start: the minimum (1, 1), and with x <= 1/2 the bound and y = 1/4,
+// where 1/4 is left.
 TEST(BoundedLeastSquares, FindsTheEndOfAValleyAndOfABound) {
   const Eigen::Vector2d start(-1.2, 1.0);
   const BoundedResult open = bounded_least_squares(rosenbrock(infinity), start, 100, 1e-12);
@@ -36,7 +37,8 @@ TEST(BoundedLeastSquares, FindsTheEndOfAValleyAndOfABound) {
   EXPECT_NEAR(closed.chi2, 0.25, 1e-12);
 }
 
-// Two columns of a cosine of 0.99999 with each other, from the bound x >= 0 of one: exact after two steps, not after a thousand.
+// Two columns of a cosine of 0.99999 with each other, from the bound x >= 0 of one: exact after two steps,
+// not after a thousand.
 TEST(BoundedLeastSquares, NumbersThatHangTogetherDoNotCreep) {
   const Eigen::Matrix<double, 3, 2> A =
       (Eigen::Matrix<double, 3, 2>() << 1.0, 1.0, 0.0, 0.004, 1.0, 1.0).finished();
@@ -51,7 +53,8 @@ TEST(BoundedLeastSquares, NumbersThatHangTogetherDoNotCreep) {
   EXPECT_NEAR(r.x[1], -2.0, 1e-4);
 }
 
-// Derivatives that promise a fall where there is none: steps are damped until nothing is left of them, and the search ends.
+// Derivatives that promise a fall where there is none: steps are damped until nothing is left of them, and
+// the search ends.
 TEST(BoundedLeastSquares, EndsWhereNoDampingHelps) {
   BoundedProblem p;
   p.lower = Eigen::VectorXd::Constant(1, -infinity);
@@ -90,7 +93,8 @@ struct Decay {
   }
 };
 
-// Corrected derivatives lead as far as new ones: several steps an asking, and none at a start where they are known.
+// Corrected derivatives lead as far as new ones: several steps an asking, and none at a start where they are
+// known.
 TEST(BoundedLeastSquares, AsksForDerivativesNowAndThen) {
   Decay decay;
   const Eigen::Vector2d start(1.6, 1.0);
@@ -107,7 +111,8 @@ TEST(BoundedLeastSquares, AsksForDerivativesNowAndThen) {
   EXPECT_EQ(known.asked, decay.asked - 1);
 }
 
-// Broyden's correction: J s is what the step has changed, and a reading that does not hang on a number still does not.
+// Broyden's correction: J s is what the step has changed, and a reading that does not hang on a number still
+// does not.
 TEST(BoundedLeastSquares, CorrectsDerivativesByTheStepItTook) {
   BoundedProblem p;
   p.lower = Eigen::Vector2d::Constant(-infinity);

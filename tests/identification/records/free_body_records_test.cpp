@@ -37,7 +37,8 @@ class FreeBodyRecords : public test::FolderFixture {
       text += fmt::format("{:.4f},{:.9g}\n", i * interval, value(i * interval) + noise(engine));
     write(file, text);
   }
-  /// scenario.toml: a body "craft" in free motion with one sensor; `body`: its numbers, and the tables after it.
+  /// scenario.toml: a body "craft" in free motion with one sensor; `body`: its numbers, and the tables after
+  /// it.
   void scenario(double duration, double interval, const std::string& body, const std::string& sensor,
                 const std::string& kind) const {
     write(
@@ -76,7 +77,8 @@ free = ["bodies[craft].inertia_kg_m2[3]"]
 heldout = ["second"]
 )");
   }
-  /// 5 kg on 200 N/m with a start of 0.02 m/s: x = v/w sin(w t), w = sqrt(40) rad/s, a period of 0.993 s. `free`: what is fitted.
+  /// 5 kg on 200 N/m with a start of 0.02 m/s: x = v/w sin(w t), w = sqrt(40) rad/s, a period of 0.993 s.
+  /// `free`: what is fitted.
   std::filesystem::path spring(double duration, const std::string& free) const {
     scenario(2.0, 0.01, R"(mass_kg = 5.0
 inertia_kg_m2 = [1.0, 1.0, 1.0]
@@ -129,7 +131,8 @@ TEST_F(FreeBodyRecords, NothingIsMissingInEitherRecord) {
   EXPECT_NEAR(trace.base.heldout_rmse, 0.01, 0.003);  // of 101 readings: 0.0007 is one deviation
 }
 
-// Both crafts began 0.004 rad/s faster than each record declares. Of the spin the record shows z alone, and a zero of the gyroscope does the same.
+// Both crafts began 0.004 rad/s faster than each record declares. Of the spin the record shows z alone, and a
+// zero of the gyroscope does the same.
 TEST_F(FreeBodyRecords, AnEffectAddsToWhatEachRecordDeclares) {
   const RecordTrace trace = trace_records(read_records(craft(0.014, -0.026, "[0.0, 0.0, -0.03]")));
   ASSERT_TRUE(trace.report.usable()) << trace.report.message;
@@ -159,7 +162,8 @@ TEST_F(FreeBodyRecords, ASensorAtItsEndIsRefused) {
   EXPECT_EQ(complaint(file), "");
 }
 
-// As heavy to turn as a grain of sand the craft would turn 8000 times a second: a trial that takes 100 times the steps of the longest run is left.
+// As heavy to turn as a grain of sand the craft would turn 8000 times a second: a trial that takes 100 times
+// the steps of the longest run is left.
 TEST_F(FreeBodyRecords, ATrialBeyondAllMeasureIsGivenUp) {
   const RecordSet set = read_records(craft(0.01, 0.02, "[0.0, 0.0, 0.02]"));
   const RecordModel model(set);

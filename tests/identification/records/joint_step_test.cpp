@@ -17,7 +17,8 @@ constexpr double inertia = 12500.0;  // kg m^2: half a tonne five metres out
 constexpr double step_s = 0.5;       // of the motor's course
 constexpr double noise_deg = 2e-5;   // a thousandth of the narrowest piece's width
 
-/// The joint of Abiko et al., Table 2: N m/deg and N m s/deg from deflections of 0, 0.04 and 0.06 deg on, torque continuous.
+/// The joint of Abiko et al., Table 2: N m/deg and N m s/deg from deflections of 0, 0.04 and 0.06 deg on,
+/// torque continuous.
 constexpr std::array<double, 3> from{0.0, 0.04, 0.06}, stiffness{12.5, 475.0, 475.0},
     damping{48.9, 87.3, 17.6};
 
@@ -32,7 +33,8 @@ double torque(double x, double rate) {
   return std::copysign(sum, x) + d * rate;
 }
 
-/// The link behind the joint while the motor steps, by Runge and Kutta's method with steps far below what the jumps of the damping could show.
+/// The link behind the joint while the motor steps, by Runge and Kutta's method with steps far below what the
+/// jumps of the damping could show.
 void write_step(const std::filesystem::path& file, double by_deg, unsigned seed) {
   constexpr double step = 2e-4, degree = 3.14159265358979323846 / 180.0;
   double q = 0.0, v = 0.0;  // deg, deg/s

@@ -15,8 +15,8 @@ Eigen::VectorXd wave(double frequency, double interval, Eigen::Index count) {
   return values;
 }
 
-// Amplitude 1/(1 + (w/w_c)^8) with the frequencies warped by the bilinear transform, w = tan(pi f dt), and no delay: within 1e-6 in the middle,
-// where the ends have died out.
+// Amplitude 1/(1 + (w/w_c)^8) with the frequencies warped by the bilinear transform, w = tan(pi f dt), and no
+// delay: within 1e-6 in the middle, where the ends have died out.
 TEST(LowPass, PassesTheShareOfButterworthWithoutDelay) {
   constexpr double interval = 1e-3, cutoff = 40.0;
   for (const double frequency : {0.5, 10.0, 30.0, 40.0, 60.0, 120.0}) {

@@ -22,7 +22,8 @@ std::vector<std::string> labels(const std::vector<RecordEffect>& effects) {
   return all;
 }
 
-/// Texts of the keys that an effect sets where its numbers are moved by their scales from null, one number after the other.
+/// Texts of the keys that an effect sets where its numbers are moved by their scales from null, one number
+/// after the other.
 std::vector<base::Override> set_by(const RecordModel& model, const RecordEffect& effect) {
   std::vector<base::Override> overrides;
   for (const RecordNumber& n : effect.numbers)
@@ -73,7 +74,8 @@ TEST(MotionCatalogue, MovesACentreOfMassThatIsNotDeclared) {
   }
 }
 
-// A joint's stiffness beside a fitted one of all joints: the effect acts on what that is, and is told as the file would have it.
+// A joint's stiffness beside a fitted one of all joints: the effect acts on what that is, and is told as the
+// file would have it.
 TEST(RecordModel, TellsWhatAKeyIsSetTo) {
   const RecordSet set = read_records(records / "flight_attachment.toml");
   const RecordModel model(set);
@@ -89,7 +91,8 @@ TEST(RecordModel, TellsWhatAKeyIsSetTo) {
   EXPECT_NEAR(model.as_set(settings, 1, 0.3 * 1.08e6), 3e5, 1e-3);
 }
 
-// What is asked of the first readings is simulated no further, and told the same but for the integration, which starts anew at other times.
+// What is asked of the first readings is simulated no further, and told the same but for the integration,
+// which starts anew at other times.
 TEST(RecordModel, PredictsTheFirstReadingsAlone) {
   const RecordSet set = read_records(records / "flight_attachment.toml");
   const RecordModel model(set);

@@ -1,4 +1,5 @@
-// Numbers that records do not determine, readings of another sign or unit, and every number of a scenario as a free one.
+// Numbers that records do not determine, readings of another sign or unit, and every number of a scenario as
+// a free one.
 #include "base/errors.hpp"
 #include "identification/motion_tracing/trace_records.hpp"
 #include "identification/records/record_file.hpp"
@@ -83,7 +84,8 @@ free = [{}]
 constexpr const char* all_three =
     R"("bodies[block].mass_kg", "bushings[fixture].translational_stiffness_N_m", "bushings[fixture].translational_damping_Ns_m")";
 
-// A speed across the one that is seen changes readings by the errors of the integration alone, which lead nowhere.
+// A speed across the one that is seen changes readings by the errors of the integration alone, which lead
+// nowhere.
 TEST_F(OpenNumbers, ANumberThatDoesNotActStaysWhereItIs) {
   const std::string across = "bodies[block].velocity_m_s[2]",
                     stiffness = "bushings[fixture].translational_stiffness_N_m";
@@ -95,14 +97,16 @@ TEST_F(OpenNumbers, ANumberThatDoesNotActStaysWhereItIs) {
   }
 }
 
-// The motion depends on k/m and c/m: from every start the quotients are the same, and no number by itself is known.
+// The motion depends on k/m and c/m: from every start the quotients are the same, and no number by itself is
+// known.
 TEST_F(OpenNumbers, MassStiffnessAndDampingScaleTogether) {
   for (const double start : {5.0, 3.5, 8.0}) {
     const RecordTrace t = fitted(spring(all_three, start));
     ASSERT_TRUE(t.report.usable()) << t.report.message;
     for (const TracedNumber& n : t.final.numbers) EXPECT_FALSE(n.identified || n.lower || n.upper) << n.key;
     ASSERT_EQ(t.final.open.size(), 1u);
-    // Equal powers; the column of the damping is a hundredth of the others', and its differences err by some per cent.
+    // Equal powers; the column of the damping is a hundredth of the others', and its differences err by some
+    // per cent.
     EXPECT_THAT(null_words(t.final.open.front().changes), HasSubstr("scale together"));
     for (const NamedChange& c : t.final.open.front().changes) EXPECT_NEAR(c.change, 1.0, 0.1) << c.key;
     const double mass = t.final.numbers[0].value;

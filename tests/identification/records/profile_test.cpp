@@ -1,4 +1,5 @@
-// Profiles against closed forms: of a body that turns under a steady moment, w = w0 + M t/J, w0 and M enter linearly and J does not.
+// Profiles against closed forms: of a body that turns under a steady moment, w = w0 + M t/J, w0 and M enter
+// linearly and J does not.
 #include "identification/records/profile.hpp"
 #include "identification/motion_tracing/trace_records.hpp"
 #include "identification/records/record_file.hpp"
@@ -79,7 +80,8 @@ sigma = {}
   }
 };
 
-// M with w0 fitted beside it: the rise is (M - M^)^2 over the variance that the covariance has, and both intervals are one.
+// M with w0 fitted beside it: the rise is (M - M^)^2 over the variance that the covariance has, and both
+// intervals are one.
 TEST_F(ProfileOfATurningBody, IsTheCovarianceWhereNumbersEnterLinearly) {
   const char* key = "loads[thruster].moment_Nm[3]";
   const RecordTrace t = trace_records(
@@ -103,8 +105,8 @@ TEST_F(ProfileOfATurningBody, IsTheCovarianceWhereNumbersEnterLinearly) {
   }
 }
 
-// J alone: 1/J enters linearly, so its profile in J is (1/J - 1/J^)^2 over a variance, and lopsided. With noise of a fifth of what is seen the
-// covariance's interval is symmetric and wrong on both sides.
+// J alone: 1/J enters linearly, so its profile in J is (1/J - 1/J^)^2 over a variance, and lopsided. With
+// noise of a fifth of what is seen the covariance's interval is symmetric and wrong on both sides.
 TEST_F(ProfileOfATurningBody, IsThatOfTheInverseWhereTheCovarianceMisleads) {
   constexpr double sigma = 3.3;  // deg/s: 1/J to a fifth
   const RecordTrace t = trace_records(
@@ -129,7 +131,8 @@ TEST_F(ProfileOfATurningBody, IsThatOfTheInverseWhereTheCovarianceMisleads) {
               0.2 * (1.0 + u) / (1.0 - u));  // of limits that are each right to 0.05 deviates
 }
 
-// A moment that may not be below its declared bound, which the readings ask for: the profile ends there, the other side goes up from it.
+// A moment that may not be below its declared bound, which the readings ask for: the profile ends there, the
+// other side goes up from it.
 TEST_F(ProfileOfATurningBody, EndsAtABound) {
   const char* key = "loads[thruster].moment_Nm[3]";
   const RecordTrace t = trace_records(

@@ -19,8 +19,9 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A pendulum of its own: m l^2 q'' = m g l sin q - c q' - (k + b exp(-(q'/s)^2)) sgn(q'), by Runge and Kutta's method, which shares no code with the solver. Numbers of
-/// data/records/pendulum_arm.toml: l = 0.1476 m, m = 0.1478 kg, inertia and the light motor about the bearing.
+/// A pendulum of its own: m l^2 q'' = m g l sin q - c q' - (k + b exp(-(q'/s)^2)) sgn(q'), by Runge and
+/// Kutta's method, which shares no code with the solver. Numbers of data/records/pendulum_arm.toml: l =
+/// 0.1476 m, m = 0.1478 kg, inertia and the light motor about the bearing.
 struct Swing {
   double inertia = 1.091e-4, viscous = 2.24e-4, coulomb = 0.0, noise = 0.02;  // kg m^2, N m s, N m, deg
   double breakaway_excess = 0.0, falls_off = 1.0;                             // b, s: N m, rad/s
@@ -130,7 +131,8 @@ TEST_F(Records, CoulombFrictionIsNamed) {
   EXPECT_NEAR(trace.final.numbers.back().value, 5e-4, 0.05 * 5e-4);  // a bound far above the interval
 }
 
-// Friction that is larger at rest, where the speed is declared at which it has fallen off; else a late sensor is as good.
+// Friction that is larger at rest, where the speed is declared at which it has fallen off; else a late sensor
+// is as good.
 TEST_F(Records, FrictionThatFallsWithTheSpeedIsNamed) {
   write_swing(folder_ / "a.csv", {.coulomb = 4e-4, .breakaway_excess = 2e-3, .falls_off = 2.0}, 4);
   const RecordTrace trace = trace_records(
@@ -156,7 +158,8 @@ TEST_F(Records, SimplexEndsWhereItHardlyMoves) {
     EXPECT_NEAR(near.base.numbers[k].value, far.base.numbers[k].value, 0.05 * far.base.numbers[k].value);
 }
 
-// A record of a swing half again as long: the numbers that are declared lose step with it in the second swing.
+// A record of a swing half again as long: the numbers that are declared lose step with it in the second
+// swing.
 TEST_F(Records, LostStepIsFoundFromTheBeginnings) {
   write_swing(folder_ / "a.csv", {.inertia = 4.0e-3, .viscous = 2.0e-4}, 6);
   const RecordTrace trace = trace_records(read_records(write("sigma = 0.02\n")), {.effects = false});
@@ -203,7 +206,8 @@ TEST_F(Records, BadRecordsAreRefusedWithEverything) {
   EXPECT_THAT(complaint(), HasSubstr("all readings are the same"));
   rows(saturated);
   EXPECT_THAT(complaint(), HasSubstr("saturated"));
-  // A turn between two steps of an encoder, all of whose other readings differ; the same cut off beyond an end of its range.
+  // A turn between two steps of an encoder, all of whose other readings differ; the same cut off beyond an
+  // end of its range.
   const auto turn = [](double range) {
     std::string text;
     for (int i = 0; i < 400; ++i) {

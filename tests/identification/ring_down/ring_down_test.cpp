@@ -131,8 +131,8 @@ TEST(RingDown, OneFrequencyDoesNotSeparate) {
   EXPECT_THAT(split_damping(std::vector<DecayOfMode>{}).statement, HasSubstr("nothing is known"));
 }
 
-// One wire that decays by 6.0 and by 1.6 1/s at one frequency, as where a mount gives in one direction only. Whichever has the
-// higher frequency, no damping of (M.4) gives both.
+// One wire that decays by 6.0 and by 1.6 1/s at one frequency, as where a mount gives in one direction only.
+// Whichever has the higher frequency, no damping of (M.4) gives both.
 TEST(RingDown, DecaysAtOneFrequencyThatContradictEachOther) {
   for (const double step : {-0.3, 0.3}) {
     const DampingSplit split =
@@ -147,7 +147,8 @@ TEST(RingDown, DecaysAtOneFrequencyThatContradictEachOther) {
   }
 }
 
-// Two polarisations of one wire in one record, 0.8 Hz apart: their errors are correlated, and they contradict each other.
+// Two polarisations of one wire in one record, 0.8 Hz apart: their errors are correlated, and they contradict
+// each other.
 TEST(RingDown, ModesOfOneRecordThatContradictEachOther) {
   RingDownFile file;
   file.series.push_back(
@@ -162,8 +163,9 @@ TEST(RingDown, ModesOfOneRecordThatContradictEachOther) {
   EXPECT_GE(split.mass_rate.upper(), 6.0);
 }
 
-// Three decays at nearly one frequency and three over a decade, which follow the law: of 400 sets each 5 % have a P below 0.05 where no
-// number is near zero; a binomial's 3 standard deviations are 3.3 %. Without material damping the test is cautious, never lenient.
+// Three decays at nearly one frequency and three over a decade, which follow the law: of 400 sets each 5 %
+// have a P below 0.05 where no number is near zero; a binomial's 3 standard deviations are 3.3 %. Without
+// material damping the test is cautious, never lenient.
 TEST(RingDown, MisfitOfDecaysThatFollowTheLawIsUniform) {
   std::mt19937 random(12);
   std::normal_distribution<double> normal(0.0, 1.0);
@@ -279,7 +281,8 @@ TEST(RingDown, RecoversTheDampingOfTheFullWire) {
   EXPECT_NEAR(split.mass_rate.value, rate, 0.05 * rate);
 }
 
-// A loose wire: its modes bend and stretch against a prestress, so that only the computed shares give the damping back.
+// A loose wire: its modes bend and stretch against a prestress, so that only the computed shares give the
+// damping back.
 TEST(RingDown, RecoversTheDampingOfALooseWire) {
   const double time = 2e-5;
   const double rate = 8.0;

@@ -9,7 +9,8 @@
 namespace snare::identification {
 namespace {
 
-/// A channel of hats over 120 readings beside a fit of one slope; the residual has the slope taken out, as a fit has.
+/// A channel of hats over 120 readings beside a fit of one slope; the residual has the slope taken out, as a
+/// fit has.
 struct Example {
   ChannelColumns channel;
   Fit fit;

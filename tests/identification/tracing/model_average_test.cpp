@@ -10,7 +10,8 @@
 namespace snare::identification {
 namespace {
 
-/// A fit of the axial stiffness at `coordinate`, known to `deviation`, that leaves `chi2` of a hundred readings.
+/// A fit of the axial stiffness at `coordinate`, known to `deviation`, that leaves `chi2` of a hundred
+/// readings.
 Fit fit_at(double coordinate, double deviation, double chi2) {
   Fit f;
   f.settings = {{&parameters().at("wire.axial_stiffness_N"), coordinate}};
@@ -78,7 +79,8 @@ TEST(IntervalOverRivals, WeighsRivalsByTheirLikelihood) {
   EXPECT_NEAR(scattered->second, near->second, 1e-9);
 }
 
-// Of two effects, rivals of the first one were fitted before the second was added: they move the number by as much.
+// Of two effects, rivals of the first one were fitted before the second was added: they move the number by as
+// much.
 TEST(IntervalOverRivals, RivalsOfAnEarlierEffectMoveTheNumberFromWhereItIs) {
   RoundFits first, second;
   first.rivals = {fit_at(0.3, 0.2, 90.0), fit_at(0.8, 0.2, 90.0)};
@@ -97,7 +99,8 @@ TEST(IntervalOverRivals, IsAbsentWithoutARivalOrAWidth) {
   EXPECT_FALSE(interval_over_rivals(round.rivals.front(), 0, {round}, 1.0));
 }
 
-/// An effect that was asked for, of z standard deviations, which moves the number by `shift` a standard deviation.
+/// An effect that was asked for, of z standard deviations, which moves the number by `shift` a standard
+/// deviation.
 Candidate asked(double z, double shift) {
   Candidate c;
   c.score.z = z;
@@ -115,7 +118,8 @@ TEST(IntervalOverCandidates, IsHardlyWiderWhereNoEffectIsSeen) {
   EXPECT_LT(interval->second, 0.25);
 }
 
-// Of three standard deviations, and alone: exp((9 - ln 100)/2) = 9 times as likely as none, the number then 0.9 higher.
+// Of three standard deviations, and alone: exp((9 - ln 100)/2) = 9 times as likely as none, the number then
+// 0.9 higher.
 TEST(IntervalOverCandidates, ReachesToWhereAnEffectThatMayBeMissingWouldMoveTheNumber) {
   const Fit base = fit_at(0.0, 0.1, 90.0);
   const auto interval = interval_over_candidates(base, 0, {asked(3.0, 0.3)});

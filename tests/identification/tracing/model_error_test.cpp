@@ -19,8 +19,9 @@ using test::mm;
 constexpr double kSigma = 0.05;  // of a reading [N]
 constexpr int kReadings = 40;
 
-/// Readings at two places that differ from what is computed by noise alone, and an optimum of two numbers: the axial stiffness, which
-/// both places tell, and one that the second tells `weak` times as well as the first.
+/// Readings at two places that differ from what is computed by noise alone, and an optimum of two numbers:
+/// the axial stiffness, which both places tell, and one that the second tells `weak` times as well as the
+/// first.
 struct TwoPlaces {
   Model model;
   Data data;

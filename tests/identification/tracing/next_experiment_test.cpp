@@ -34,8 +34,8 @@ std::string next_after(double travel) {
       .what;
 }
 
-// A solid wire with 5 mm of slack that is bent by a few millimetres is far from its strength; pushed until it is taut and half as far again
-// it is not.
+// A solid wire with 5 mm of slack that is bent by a few millimetres is far from its strength; pushed until it
+// is taut and half as far again it is not.
 TEST(NextExperiment, SaysWhatMayBreakTheWire) {
   const std::string gentle = next_after(0.3 * mm);
   EXPECT_NE(gentle.find("push at"), std::string::npos) << gentle;

@@ -1,4 +1,5 @@
-// Numbers that the readings of a push do not determine, readings of another sign or unit, and every key as a free number.
+// Numbers that the readings of a push do not determine, readings of another sign or unit, and every key as a
+// free number.
 #include "base/errors.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "identification/tracing/trace.hpp"
@@ -61,7 +62,8 @@ bool has(const Trace& t, FindingKind kind) {
   return std::ranges::any_of(t.findings, [kind](const Finding& f) { return f.kind == kind; });
 }
 
-// A push is homogeneous of first degree in its stiffnesses and the gain: whatever the start, only products are known.
+// A push is homogeneous of first degree in its stiffnesses and the gain: whatever the start, only products
+// are known.
 TEST(OpenNumbers, AGainBesideBothStiffnessesIsOpen) {
   std::vector<double> products;
   for (const double factor : {1.0, 2.0, 0.5}) {
@@ -89,7 +91,8 @@ TEST(OpenNumbers, AGainBesideBothStiffnessesIsOpen) {
       EXPECT_TRUE(n.lower && n.upper && n.standard_error);
     products.push_back(number(t, "wire.axial_stiffness_N").value * number(t, "reading.force_gain").value);
   }
-  // All starts end at one product, to the tolerance of the iteration, 1e-6 of chi2, about a hundredth of a standard error.
+  // All starts end at one product, to the tolerance of the iteration, 1e-6 of chi2, about a hundredth of a
+  // standard error.
   for (const double p : products) EXPECT_NEAR(p, products.front(), 1e-3 * products.front());
 }
 
@@ -114,7 +117,8 @@ TEST(OpenNumbers, IndependentNumbersStayKnown) {
   EXPECT_TRUE(t.findings.empty());
 }
 
-// A wire that is stiffer than declared asks for less than no compliance: the other numbers reach their minimum with that one on its bound.
+// A wire that is stiffer than declared asks for less than no compliance: the other numbers reach their
+// minimum with that one on its bound.
 TEST(OpenNumbers, ANumberOnItsBoundLeavesTheOthersTheirMinimum) {
   const std::string bending = "wire.bending_stiffness_Nm2", mounts = "mount_axial_compliance.compliance_m_N";
   std::vector<double> found;
@@ -236,8 +240,9 @@ void collect(const nlohmann::json& schema, const nlohmann::json& object, const s
     collect(schema, inner, prefix.empty() ? name : prefix + "." + name, keys);
 }
 
-// Every number of the format and every number that can be fitted, as the one free number beside the axial stiffness: an answer, or a
-// refusal with its reason. Four kinds of test, so that each number is declared in one of them.
+// Every number of the format and every number that can be fitted, as the one free number beside the axial
+// stiffness: an answer, or a refusal with its reason. Four kinds of test, so that each number is declared in
+// one of them.
 TEST(FreeNumbers, EveryKeyHasAnAnswerOrAReason) {
   std::ifstream file(SNARE_SOURCE_DIR "/data/schemas/experiment.schema.json");
   const nlohmann::json schema = nlohmann::json::parse(file);

@@ -36,8 +36,8 @@ Trace traced(const Experiment& e) {
   return trace(e, options);
 }
 
-// With only the three zeros fitted the declared wire is 4.2 N rms (to 4 mm) and 1874 N (to 14 mm) away from fits that
-// are good to 0.2 N. The noise cannot have made the difference: R2 bounds it.
+// With only the three zeros fitted the declared wire is 4.2 N rms (to 4 mm) and 1874 N (to 14 mm) away from
+// fits that are good to 0.2 N. The noise cannot have made the difference: R2 bounds it.
 TEST(PublishedTrace, AWireThatIsFarOffIsRejected) {
   for (const char* to : {"4", "14"}) {
     const Trace t = traced(published(to, {{"fit.free", "[" + zeros + "]"}}));
@@ -62,8 +62,8 @@ TEST(PublishedTrace, AMountThatSlipsIsRejected) {
   }
 }
 
-// Numbers that are printed of a wire's own curve, without noise: moved away from the truth in one number, all others
-// refitted, the deviance is never below that of the truth.
+// Numbers that are printed of a wire's own curve, without noise: moved away from the truth in one number, all
+// others refitted, the deviance is never below that of the truth.
 TEST(PublishedTrace, TheDevianceIsLeastAtTheTruth) {
   const Experiment e = published("4", {});
   std::vector<Setting> truth;

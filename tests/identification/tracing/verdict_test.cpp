@@ -192,8 +192,8 @@ TEST(Verdict, IsDecidedByAllThatIsAsked) {
   }
 }
 
-// Readings that begin late, their zero off by 0.1 mm: the stiffnesses take it up, the error is below what has a name, and
-// the zero is still found.
+// Readings that begin late, their zero off by 0.1 mm: the stiffnesses take it up, the error is below what has
+// a name, and the zero is still found.
 TEST(Verdict, AZeroIsLookedForWhereTheTouchIsNotSeen) {
   for (const double zero : {0.0, 0.1 * mm}) {
     Experiment e = computed(40, {65.0 * mm, 90.0 * mm});

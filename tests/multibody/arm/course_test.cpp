@@ -20,7 +20,8 @@ std::vector<Course> courses() {
           Course::smoothly_through(0.3, 0.5, {0.0, 0.4, 0.8, 1.4, 2.0}, {5.0, 5.0, 5.4, 5.2, 6.4})};
 }
 
-// The rate is the slope of the angle, the acceleration that of the rate, away from the breaks; both ends stand.
+// The rate is the slope of the angle, the acceleration that of the rate, away from the breaks; both ends
+// stand.
 TEST(Course, RatesAreDerivatives) {
   for (const Course& c : courses()) {
     for (int i = 0; i < 70; ++i) {
@@ -40,7 +41,8 @@ TEST(Course, RatesAreDerivatives) {
   }
 }
 
-// 1.4 rad at 0.8 rad/s with ramps of 0.25 s: 1.4/0.8 + 0.25 s. Where the way is shorter than both ramps they shrink.
+// 1.4 rad at 0.8 rad/s with ramps of 0.25 s: 1.4/0.8 + 0.25 s. Where the way is shorter than both ramps they
+// shrink.
 TEST(Course, KeepsItsRate) {
   const Course c = Course::at_rate(0.3, 1.7, 0.5, 0.8, 0.25);
   EXPECT_NEAR(c.duration, 2.0, 1e-15);

@@ -74,7 +74,8 @@ TEST(ElasticArm, JacobianOfTheDaeMatchesDifferences) {
 }
 
 TEST(ElasticArm, FrequenciesOfAChainAreThoseOfTheMassMatrix) {
-  // With all motors locked the squares are the eigenvalues of H^-1 K; sum and product are its trace and determinant.
+  // With all motors locked the squares are the eigenvalues of H^-1 K; sum and product are its trace and
+  // determinant.
   const auto arm = test::chain_arm(5, Base::on_the_world, 400.0);
   Eigen::VectorXd q(5);
   q << 0.3, -0.8, 1.1, 0.4, -0.5;
@@ -122,8 +123,8 @@ TEST(ElasticArm, MomentumOfAFloatingArmStays) {
 }
 
 TEST(ElasticArm, StiffSpringsGiveTheRigidArm) {
-  // (H + B) q'' + c = tau by Runge and Kutta beside the elastic arm with ever stiffer gears: the difference goes as
-  // 1/K.
+  // (H + B) q'' + c = tau by Runge and Kutta beside the elastic arm with ever stiffer gears: the difference
+  // goes as 1/K.
   const double end = 2.0;
   const Eigen::Vector3d torque(8.0, -4.0, 3.0);
   const auto rigid = test::chain_arm(3, Base::on_the_world, 0.0);

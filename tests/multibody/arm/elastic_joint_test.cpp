@@ -37,7 +37,8 @@ std::vector<double> rising_zeros(const multibody::ArmHistory& history) {
 
 /// Period of a mass on the continuous law with a first slope k0 up to a and a slope k1 beyond, swinging with
 /// amplitude A:
-/// a sine through the middle and arcs of another sine outside, by the elementary formulas of the harmonic oscillator.
+/// a sine through the middle and arcs of another sine outside, by the elementary formulas of the harmonic
+/// oscillator.
 double closed_period(double inertia, double k0, double k1, double a, double A) {
   if (A <= a) return 2.0 * pi * std::sqrt(inertia / k0);
   const double w0 = std::sqrt(k0 / inertia), w1 = std::sqrt(k1 / inertia);
@@ -109,8 +110,8 @@ TEST(DeflectionLaw, RampsReplaceTheJumpsOfTorqueAndDamping) {
 }
 
 TEST(ElasticJoint, LoadBetweenTheTorquesOfAJumpRestsOnIt) {
-  // 10 N m on a literal jump from 0.5 to 19 N m. With a width it comes to rest within it, with few events; as a true jump
-  // it ends in events without end, which is said.
+  // 10 N m on a literal jump from 0.5 to 19 N m. With a width it comes to rest within it, with few events; as
+  // a true jump it ends in events without end, which is said.
   const double degree = pi / 180.0;
   for (const double width : {0.0, 4e-5, 4e-4, 4e-3}) {
     const multibody::DeflectionLaw law(test::table2(1.0).pieces(), multibody::StiffnessReading::literal,
@@ -159,8 +160,8 @@ TEST(ElasticJoint, FrequenciesAreThoseOfTwoMasses) {
   ASSERT_TRUE(history.report.usable()) << history.report.message;
   const auto zeros = rising_zeros(history);
   ASSERT_GT(zeros.size(), 5U);
-  // The integrator's error is some ten times its tolerance of 1e-9; Hermite's cubic errs by (w h)^4/384 = 1e-7 of a
-  // period at its ends only, which the number of periods divides.
+  // The integrator's error is some ten times its tolerance of 1e-9; Hermite's cubic errs by (w h)^4/384 =
+  // 1e-7 of a period at its ends only, which the number of periods divides.
   EXPECT_NEAR((zeros.back() - zeros.front()) / static_cast<double>(zeros.size() - 1) * limp[1].frequency, 1.0,
               1e-6);
 }
@@ -186,8 +187,8 @@ TEST(ElasticJoint, PeriodFollowsTheAmplitudeOfThePiecewiseLaw) {
 }
 
 TEST(ElasticJoint, PassesTheJumpsWithoutThrashing) {
-  // Each crossing of 0.04 or 0.06 deg is one event and one restart, with the damping that jumps at both, and in the
-  // literal reading with a torque that jumps by 18.5 N m.
+  // Each crossing of 0.04 or 0.06 deg is one event and one restart, with the damping that jumps at both, and
+  // in the literal reading with a torque that jumps by 18.5 N m.
   for (const auto reading : {multibody::StiffnessReading::continuous, multibody::StiffnessReading::literal}) {
     const double degree = pi / 180.0;
     auto run = validation::at_rest(test::one_joint(20000.0, 1.0, test::table2(1.0, reading)), Drive::locked(),
@@ -233,7 +234,8 @@ TEST(ElasticJoint, BacklashLetsTheLinkFlyFreely) {
 }
 
 TEST(ElasticJoint, DryFrictionStopsTheMotorAndKeepsIt) {
-  // A free motor against Coulomb friction alone stops after B w/T, having turned B w^2/(2 T); then nothing creeps.
+  // A free motor against Coulomb friction alone stops after B w/T, having turned B w^2/(2 T); then nothing
+  // creeps.
   const double B = 4.0, T = 3.0, w = 0.6;
   auto arm = test::one_joint(1.0, B, multibody::DeflectionLaw::linear(0.0, 0.0));
   arm.joints[0].friction = {T, T, 1e-3, 0.0};
@@ -255,7 +257,8 @@ TEST(ElasticJoint, BackDriveTorqueHoldsALimpJointUntilTheLoadExceedsIt) {
   arm.joints[0].back_drive = back_drive;
   for (const double moment : {4.9, 20.0}) {
     auto run = validation::at_rest(arm, Drive::limp(), 4.0, 1e-8);
-    // A constant moment on a spring swings to twice its static deflection, so 4.9 N m stays below 10 and 20 does not.
+    // A constant moment on a spring swings to twice its static deflection, so 4.9 N m stays below 10 and 20
+    // does not.
     run.loads.push_back({1,
                          {{0.0, 0.0, moment}, Eigen::Vector3d::Zero()},
                          0.5,
@@ -274,7 +277,8 @@ TEST(ElasticJoint, BackDriveTorqueHoldsALimpJointUntilTheLoadExceedsIt) {
 }
 
 TEST(ElasticJoint, ServoAtItsLimitPushesWithTheLimit) {
-  // Rigidly geared: 2 + 4 kg m^2 under the limit of 3 N m accelerate with 0.5 rad/s^2, while the course is far away.
+  // Rigidly geared: 2 + 4 kg m^2 under the limit of 3 N m accelerate with 0.5 rad/s^2, while the course is
+  // far away.
   auto arm = test::one_joint(2.0, 4.0, multibody::DeflectionLaw::linear(1e5, 1e3));
   Drive drive = Drive::holding(100.0, 50.0, 20.0, 3.0);
   auto run = validation::at_rest(arm, drive, 4.0, 1e-8);

@@ -46,7 +46,8 @@ angles_deg = [30.0]
   }
 };
 
-// The beam with a heavy end: f = sqrt(3 EI/(m L^3))/(2 pi), either way; the inertia of the two bodies about themselves takes 2.5e-5 of it.
+// The beam with a heavy end: f = sqrt(3 EI/(m L^3))/(2 pi), either way; the inertia of the two bodies about
+// themselves takes 2.5e-5 of it.
 TEST_F(FlexibleLink, SwingsAsTheBeamWithAHeavyEnd) {
   constexpr double stiffness = 150.0, length = 2.0, mass = 10.0;  // EI [N m^2]
   const ArmDescription arm =
