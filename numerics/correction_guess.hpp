@@ -18,8 +18,8 @@ class CorrectionGuess {
   /// What was is forgotten: at a start.
   void restart() { states_ = 0; }
   /// A step of this order is tried, from the state before to `time`; accepted: how many steps there are since
-  /// the start. Sets the guess, of any unit, zero where there is none: after a change of the order, or where the last one
-  /// was no better than none.
+  /// the start. Sets the guess, of any unit, zero where there is none: after a change of the order, or where
+  /// the last one was no better than none.
   void begin(long accepted, double before, double time, int order, Eigen::Ref<Eigen::VectorXd> correction);
   /// What the step needed, of any unit; weight: one over the tolerance of every unknown, in its unit.
   void end(const Eigen::Ref<const Eigen::VectorXd>& correction,
