@@ -272,7 +272,7 @@ const Flights& flights(Runs& runs) {
 template <std::size_t record, std::size_t channel>
 FigureResult rate(Runs& runs) {
   const Flights& f = flights(runs);
-  const identification::MotionRecord& flown = f.set.records.at(record);
+  const identification::Record& flown = f.set.records.at(record);
   const Eigen::VectorXd times = flown.times.array() - (held_at - 29.5);
   const auto curve = [&times](const char* name, Origin origin, const Eigen::VectorXd& values) {
     return FigureCurve{name, origin, {times.begin(), times.end()}, {values.begin(), values.end()}};

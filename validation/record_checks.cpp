@@ -44,7 +44,7 @@ identification::RecordSet read(const std::filesystem::path& file, const std::fil
 /// Correlation of what the final model leaves of the force with itself one cycle of the course later.
 double repeats(const RecordTrace& trace, const identification::RecordSet& set) {
   constexpr double cycle = 6.24;  // s: after it the recorded reference is the same to the last digit
-  const identification::MotionRecord& record = set.records.front();
+  const identification::Record& record = set.records.front();
   const Eigen::Index n = record.times.size();
   const auto shift = static_cast<Eigen::Index>(
       std::lround(cycle / (record.times[n - 1] - record.times[0]) * static_cast<double>(n - 1)));
