@@ -355,7 +355,8 @@ std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordD
   }
   const ValleyPoint end = follow_valley(model, data, optimum, direction, k, side);
   const double promised = 2.0 * half.promised * end.share;
-  if (model.stopped() || promised < can_tell || !is_no_rise(end.rise, promised)) return std::nullopt;
+  if (model.stopped() || (promised < can_tell && end.share < 1.0) || !is_no_rise(end.rise, promised))
+    return std::nullopt;
   return end;
 }
 
