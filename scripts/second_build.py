@@ -51,7 +51,7 @@ def some(source, build, rooms, jobs):
         name = pathlib.Path(entry["file"]).relative_to(ROOT)
         if name.name.startswith("unity_"):
             sys.exit("build/release joins sources: cmake --preset release -DCMAKE_UNITY_BUILD=OFF")
-        if str(name.parent) not in rooms:
+        if not any(name.is_relative_to(room) for room in rooms):
             continue
         line = [a.replace(f"-I{ROOT}", f"-I{source}") for a in shlex.split(entry["command"])]
         line = line[1:] if pathlib.Path(line[0]).name == "ccache" else line
