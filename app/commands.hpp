@@ -51,7 +51,7 @@ using namespace results;
 [[nodiscard]] ExitStatus run_ringdown(const std::filesystem::path& ringdown, const CommonOptions& options,
                                       Console& console);
 
-/// Many cases of one file: cases.csv, summary.json, report.html; goes on where it was killed.
+/// Many cases of one file: cases.csv, summary.json, report.html; continues where it was killed.
 [[nodiscard]] ExitStatus run_sweep(const std::filesystem::path& sweep, const CommonOptions& options,
                                    Console& console);
 

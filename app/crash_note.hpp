@@ -11,7 +11,7 @@ namespace snare::app {
 /// The thread that holds this runs a case. When a signal ends the process there (SIGSEGV, SIGBUS, SIGFPE,
 /// SIGILL, SIGABRT: a fault of this program or of a library, a stack that is used up), the journal gets a
 /// line that says so, standard error names the case, and the process ends by the signal as it would. The same
-/// command then goes on with the other cases.
+/// command then continues with the other cases.
 ///
 /// What ends a process without a signal that can be caught (SIGKILL, a machine that fails) leaves no line:
 /// the case is run again. One a thread at a time.

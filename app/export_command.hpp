@@ -15,8 +15,8 @@ struct ExportOptions {
   std::string body;                   ///< of the model
   std::optional<double> position_mm;  ///< along the span; none: the law position nearest to mid-span
   std::optional<double> slack_mm;     ///< none: that of the wire
-  std::string
-      axis;  ///< of the push in the frame of the body, three numbers; empty: its slide joint's, else y
+  /// Of the push in the frame of the body, three numbers; empty: its slide joint's, else y.
+  std::string axis;
   std::string point_mm;  ///< that meets the wire, in the frame of the body, three numbers; empty: its origin
   double first_touch_mm = 0.0;  ///< travel from the pose of the model to first touch
   int number = 1;               ///< of the case in law.json

@@ -30,9 +30,9 @@ void set_stage(const std::string& stage);
 class KeepWhenInterrupted {
  public:
   /// `keep` writes what is finished at any time and says what that is, as a sentence; it is called from
-  /// another thread while the work goes on, so what it reads must be guarded against it; an empty sentence is
-  /// not printed. Empty: nothing is kept. `json_schema`: under which standard output gets the word that all
-  /// was interrupted; empty: it gets none, or what `keep` writes; nothing: as before, at first none.
+  /// another thread while the work continues, so what it reads must be guarded against it; an empty sentence
+  /// is not printed. Empty: nothing is kept. `json_schema`: under which standard output gets the word that
+  /// all was interrupted; empty: it gets none, or what `keep` writes; nothing: as before, at first none.
   KeepWhenInterrupted(std::function<std::string()> keep, std::optional<std::string> json_schema);
   ~KeepWhenInterrupted();
   KeepWhenInterrupted(const KeepWhenInterrupted&) = delete;

@@ -102,7 +102,7 @@ class Runs {
                                 : ""));
     }
     if (stopped || kept_)
-      write();  // before the motion counts as finished: it goes on from its last checkpoint
+      write();  // before the motion counts as finished: it continues from its last checkpoint
     progress_.finished.push_back({std::move(samples), std::move(result)});
     if (stopped) return false;
     progress_.samples.clear();

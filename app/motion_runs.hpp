@@ -18,9 +18,9 @@ struct CheckpointPolicy {
   double wall_time = 0.0;  ///< least between two that are written [s], >= 0
 };
 
-/// Runs motions in turn and shows their progress. After a kill or an interruption the same call goes on from
-/// the last checkpoint, and ends with the same bits. An interrupted run gives fewer records than motions, the
-/// last one unfinished; what has failed is told to the console.
+/// Runs motions in turn and shows their progress. After a kill or an interruption the same call continues
+/// from the last checkpoint, and ends with the same bits. An interrupted run gives fewer records than
+/// motions, the last one unfinished; what has failed is told to the console.
 /// docs/decisions/interruption-and-faults.md#checkpoints
 [[nodiscard]] std::vector<MotionRecord> run_motions(const std::vector<scenario::NamedMotion>& motions,
                                                     const CheckpointPolicy& policy, Console& console);

@@ -5,7 +5,7 @@
 namespace snare::app {
 
 /// Text on standard error; what that does not take (a full disk, a reader that is gone) is lost, and the work
-/// goes on.
+/// continues.
 void tell(std::string_view text) noexcept;
 
 /// Gives closed standard streams a descriptor, so that no file that is opened later takes their place.

@@ -79,8 +79,9 @@ std::string asked(const Model::Applied& applied) {
     offsets.push_back(applied.reading[k].displacement_offset);
   }
   std::string text;
+  // the limits of the key
   const bool ranged = applied.series.front().test.pusher.direction == coupling::PushDirection::outward &&
-                      travel >= 1e-9 && travel <= 1.0;  // the limits of the key
+                      travel >= 1e-9 && travel <= 1.0;
   if (ranged) text += fmt::format("\n[ranges]\ntravel_mm = {}\n", decimal(results::in_mm(travel)));
   text += fmt::format("\n[laws]\npositions_mm = {}\n", array(positions));
   const bool inside = std::ranges::all_of(offsets, [&](double x) { return x >= 0.0 && x < travel; });

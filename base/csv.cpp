@@ -171,7 +171,7 @@ class CsvParser {
     stopped_ = stopped_ || !problems_.empty();  // what follows cannot be told apart
   }
 
-  /// Whether the line below the header has units in the place of numbers; they are compared with what is
+  /// Whether the line below the header has units instead of numbers; they are compared with what is
   /// asked.
   bool units(std::string_view text) {
     const std::vector<std::string> cells = cells_of(text, header_->separator);

@@ -20,8 +20,8 @@ struct CsvColumn {
   /// names this one may rename by `columns = {...}` and scale by `scale = {...}`: messages then say how.
   /// Empty: it cannot be renamed.
   std::string meaning = {};
-  bool scaled =
-      false;  ///< a scale is declared: units that the file gives are not compared with that of the meaning
+  /// a scale is declared: units that the file gives are not compared with that of the meaning.
+  bool scaled = false;
 };
 
 }  // namespace snare::base

@@ -15,8 +15,8 @@ namespace snare::base {
 
 /// The line of a CSV file that names the columns.
 struct CsvHeader {
-  char separator =
-      ',';  ///< of the cells: comma, semicolon, tab, or a blank for any number of blanks and tabs
+  /// Of the cells: comma, semicolon, tab, or a blank for any number of blanks and tabs.
+  char separator = ',';
   std::vector<std::string> names;
 };
 

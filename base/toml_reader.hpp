@@ -21,7 +21,8 @@ class TomlTable;
 ///
 /// The schema is what is asked: a reader asks the tables for their keys, with kind and range, and `finish()`
 /// throws one InputError with everything that was wrong, including keys that nobody asked for (with the
-/// nearest key that was). A question whose answer is wrong returns a harmless value, so that reading goes on:
+/// nearest key that was). A question whose answer is wrong returns a harmless value, so that reading
+/// continues:
 ///
 ///     TomlDocument document(path, overrides);
 ///     TomlTable wire = document.root().table("wire");

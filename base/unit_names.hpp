@@ -13,7 +13,7 @@ struct NamedUnit {
   std::string_view name = {};  ///< as it was written, without brackets
 };
 
-/// The unit that a text is: "mm", "(kN)", "[s]"; nothing where it is none that is known. The case of letters
+/// The unit that a text is: "mm", "(kN)", "[s]"; nothing where it is unknown. The case of letters
 /// counts (mN, MN).
 [[nodiscard]] std::optional<NamedUnit> unit_of(std::string_view text);
 

@@ -5,8 +5,8 @@
 //     [--intervals]
 //   [--minutes M] [--out FILE] [--sets FILE] [--require]
 // --effects a+b puts two in at once; --pairs takes a list of such pairs.
-// --sets keeps every set's outcome, one line of JSON each; a run that finds the file goes on where it ended.
-// It belongs to one build: another one starts with a new file. --minutes ends a run after a set.
+// --sets keeps every set's outcome, one line of JSON each; a run that finds the file continues where it
+// ended. It belongs to one build: another one starts with a new file. --minutes ends a run after a set.
 // --design geometry: length off by 0.1 mm and freed, every position off by 0.02 mm (standard deviations);
 // replicates and
 // dense: three pushes, three records each that deviate smoothly, noise not declared, 20 and 40 readings a leg
@@ -79,12 +79,12 @@ struct Outcome {
   double seconds = 0.0;
   double made_size = 0.0;
   bool decided = false;
-  bool partial =
-      false;  // of several effects some are named and none that is not inside, or none at all as unexplained
+  // of several effects some are named and none that is not inside, or none at all as unexplained
+  bool partial = false;
   double probability = 0.0;  // of the hypotheses that hold what is inside; 0 without hypotheses
   std::string leading;       // hypothesis, with its variable where an unknown function leads
-  std::vector<std::pair<double, bool>>
-      weighed;  // probabilities from 0.01 to 0.99, and which are of what is inside
+  // probabilities from 0.01 to 0.99, and which are of what is inside
+  std::vector<std::pair<double, bool>> weighed;
   bool finished = false;
   bool reached = true;  // the effect could be made that large (weight cannot)
 };

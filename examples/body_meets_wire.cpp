@@ -24,8 +24,8 @@ int main() {
 
   coupling::Motion motion;
   snare::wire::RodInMotion rod = snare::wire::rod_in_motion(steel, span, 40);
-  rod.formulation =
-      snare::wire::Formulation::higher_order;  // it bends within 8 mm of mounts and ball, elements have 25 mm
+  // it bends within 8 mm of mounts and ball, elements have 25 mm
+  rod.formulation = snare::wire::Formulation::higher_order;
   motion.wires.push_back({"wire", rod, coupling::straight_wire(rod, {0, 0, 0}, {span, 0, 0}), {}});
   coupling::MotionBody body;
   body.properties.mass = mass;

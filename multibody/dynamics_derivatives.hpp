@@ -39,8 +39,8 @@ const InverseDynamicsDerivatives& differentiate_inverse_dynamics(const Tree& tre
 /// Derivatives of the momentum about the world's origin, in its axes (angular over linear), (6 x nv).
 ///                                                                                            theory.md (A.8)
 struct MomentumDerivatives {
-  Eigen::Matrix<double, 6, Eigen::Dynamic>
-      position;  ///< along velocities: joints turn and shift in their own frames
+  /// Along velocities: joints turn and shift in their own frames.
+  Eigen::Matrix<double, 6, Eigen::Dynamic> position;
   Eigen::Matrix<double, 6, Eigen::Dynamic> velocity;
 };
 /// From what `differentiate_inverse_dynamics` left in its storage.

@@ -30,8 +30,8 @@ struct Reach {
 
 /// The coordinates at which a frame of a tree has the pose X_WF, six joints moving and all other coordinates
 /// as in `posture`: of the solutions within the limits the one nearest to the posture, by the sum of squares
-/// of the changes of coordinates [rad, m]. Angles
-/// are taken by whole turns to where they are nearest within the limits.                     theory.md (A.18)
+/// of the changes of coordinates [rad, m]. Angles are taken by whole turns to where they are nearest within
+/// the limits.                                                                               theory.md (A.18)
 ///
 /// Looks from the posture and from 400 places spread evenly over the joints' ranges (of +-180 deg or 10 m
 /// where they have no limits), the same every time.

@@ -52,8 +52,7 @@ struct FrameMotion {
 [[nodiscard]] FrameMotion frame_motion(const Tree& tree, const Kinematics& kinematics, int frame);
 
 /// Jacobian J(q) of a frame, (6 x nv): angular velocity over velocity of the origin, in the axes of the
-/// world, for
-/// each velocity [-, m].                                                                      theory.md (A.4)
+/// world, for each velocity [-, m].                                                           theory.md (A.4)
 [[nodiscard]] Matrix6X frame_jacobian(const Tree& tree, const Kinematics& kinematics, int frame);
 /// J^T F of a wrench about a point p_W [m] of a body, in the axes of the world [N m, N]: added to forces
 /// (nv).

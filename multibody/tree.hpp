@@ -13,8 +13,8 @@ namespace snare::multibody {
 /// How a moving body is joined to its parent.
 ///
 /// A free joint has the coordinates p (3) [m] and a quaternion w, x, y, z (4) of the pose of the body in the
-/// joint's
-/// frame, and the velocities omega (3) [rad/s] and v (3) [m/s] of the body in its own axes.   theory.md (A.3)
+/// joint's frame, and the velocities omega (3) [rad/s] and v (3) [m/s] of the body in its own axes.
+///                                                                                            theory.md (A.3)
 enum class JointKind { revolute, prismatic, free };
 
 /// A moving body and the joint that carries it. At zero of a revolute or prismatic joint the body's frame is

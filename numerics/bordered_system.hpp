@@ -37,8 +37,8 @@ class BorderedSystem {
   Eigen::MatrixXd corner;           ///< E (m x m)
   std::vector<Entry> rows;          ///< D
   std::vector<Anchor> anchors;      ///< columns of C that are -e_i
-  std::vector<std::pair<int, const Eigen::VectorXd*>>
-      columns;  ///< dense columns of C: border unknown, values
+  /// Dense columns of C: border unknown, values.
+  std::vector<std::pair<int, const Eigen::VectorXd*>> columns;
 
   /// Clears residuals and structure for m border unknowns; K is left to the caller.
   void reset(int n, int m);

@@ -40,7 +40,7 @@ class HermiteCurve {
   /// roundings.
   HermiteCurve(std::vector<double> knots, std::vector<double> values);
 
-  /// The curve at x; beyond the ends the outermost cubic goes on.
+  /// The curve at x; beyond the ends the outermost cubic continues.
   [[nodiscard]] double value(double x) const noexcept;
   /// Its first derivative.
   [[nodiscard]] double slope(double x) const noexcept;

@@ -24,8 +24,8 @@ enum class NewtonTest {
 /// The error of a step is tested block by block: the root mean square of error over tolerance in a block, and
 /// of that over the blocks with differential unknowns, must be below one.
 struct IdaOptions {
-  double relative_tolerance =
-      1e-5;  ///< of every unknown but those of blocks that are not relative [-], in (0, 1)
+  /// Of every unknown but those of blocks that are not relative [-], in (0, 1).
+  double relative_tolerance = 1e-5;
   /// Highest order of the backward differentiation formulas, 1 to 5. Orders above 2 are unstable for undamped
   /// oscillations that the step does not resolve.                                             theory.md (M.2)
   int max_order = 5;
@@ -33,11 +33,10 @@ struct IdaOptions {
   /// A smaller one is a failure [s], > 0: without it IDA creeps up to a time that it cannot pass, for ever.
   double smallest_step = 1e-13;
   /// [s]; 0: a thousandth of the way to the limit, and at most a tenth of the longest step before the last
-  /// start; where
-  /// that is too long the error test shortens it.                                             theory.md (M.2)
+  /// start; where that is too long the error test shortens it.                                theory.md (M.2)
   double first_step = 0.0;
-  bool cautious_start =
-      false;  ///< with first_step = 0: IDA's own, within which nothing changes by half its tolerance
+  /// With first_step = 0: IDA's own, within which nothing changes by half its tolerance.
+  bool cautious_start = false;
   bool test_algebraic = false;  ///< algebraic unknowns take part in the error test (index 1 only)
   NewtonTest newton_test = NewtonTest::mean;
   double newton_share = 0.33;  ///< of the tolerance that the Newton iteration may leave [-]
@@ -46,15 +45,14 @@ struct IdaOptions {
   double matrix_change = 0.25;
   /// How many more matrices a step may have, of its own iterates, where the corrections shrink slowly with
   /// that of its first guess; as many iterations are added. With any, a matrix of an earlier step is
-  /// corrected by what its corrections show, and has three
-  /// times as many iterations. With NewtonTest::every_unknown.                       theory.md (M.12), (N.8)
+  /// corrected by what its corrections show, and has three times as many iterations. With
+  /// NewtonTest::every_unknown.                                                       theory.md (M.12), (N.8)
   int renewals = 0;
 };
 
 /// Integrals along the motion on which no equation depends, I' = f(t, y, y'): by the same formula, orders and
 /// steps as the unknowns. What is linear in the unknowns and has f as its rate agrees with its integral to
-/// round-off and to what
-/// the Newton iteration leaves.                                                            theory.md (M.11)
+/// round-off and to what the Newton iteration leaves.                                        theory.md (M.11)
 struct IdaIntegrals {
   int count = 0;
   std::function<void(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rates)> rates;

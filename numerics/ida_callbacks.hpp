@@ -25,8 +25,8 @@ struct NewtonState {
   double share = 0.0;      ///< of the tolerance that it may leave [-]
   int most = 0;            ///< iterations
   bool renewable = false;  ///< whether slow convergence brings a matrix of the present iterate
-  double may_grow =
-      0.0;  ///< corrections smaller than this share of the first may be larger than the one before [-]
+  /// Corrections smaller than this share of the first may be larger than the one before [-].
+  double may_grow = 0.0;
 };
 
 /// What IDA's callbacks in C reach through their user pointer; an exception waits here until IDA has
@@ -55,8 +55,8 @@ struct IdaCallbacks {
   [[nodiscard]] int begin_iteration(const Eigen::Ref<const Eigen::VectorXd>& predicted, double& share);
 
   /// SUN_NLS_SUCCESS when every unknown is within its share of its tolerance after a step of the iteration,
-  /// the first of which
-  /// has the number 0; SUN_NLS_CONTINUE, or SUN_NLS_CONV_RECVR when it does not converge.    theory.md (M.12)
+  /// the first of which has the number 0; SUN_NLS_CONTINUE, or SUN_NLS_CONV_RECVR when it does not converge.
+  ///                                                                                         theory.md (M.12)
   [[nodiscard]] int converged(int iteration, const NewtonState& at,
                               const Eigen::Ref<const Eigen::VectorXd>& step,
                               const Eigen::Ref<const Eigen::VectorXd>& weight);

@@ -9,7 +9,7 @@
 namespace snare::numerics {
 
 /// Sparse LU factorisation by KLU: the pattern is analysed once, values are refactorised with the pivots of
-/// the first factorisation while that stays accurate, and factorised anew otherwise (Davis and Natarajan
+/// the first factorisation while that stays accurate, and factorised again otherwise (Davis and Natarajan
 /// 2010). Of any unit.
 class Klu {
  public:

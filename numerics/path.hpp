@@ -48,8 +48,7 @@ struct PathWorkspace {
 SolveReport correct(PathProblem& problem, PathPoint& point, PathWorkspace& workspace, int max_iterations);
 
 /// Direction of the path at a corrected point, of unit length in the norm |band|^2 / n + parameter^2 and
-/// pointing
-/// so that its product with `like` is positive.                                       theory.md (N.4)
+/// pointing so that its product with `like` is positive.                                      theory.md (N.4)
 /// Where the matrix there is singular the path has no such direction: then `like`, or nothing where that is
 /// null.
 struct PathTangent {
@@ -61,8 +60,7 @@ struct PathTangent {
                                                  PathWorkspace& workspace, const PathTangent* like);
 
 /// Newton's method for the point of the path in the plane through `start` + step * tangent that is normal to
-/// the
-/// tangent (pseudo arc length, Keller 1977): passes folds in the parameter.          theory.md (N.5)
+/// the tangent (pseudo arc length, Keller 1977): passes folds in the parameter.               theory.md (N.5)
 /// step: in the norm of PathTangent, in the units of band and parameter.
 SolveReport correct_along(PathProblem& problem, PathPoint& point, const PathPoint& start,
                           const PathTangent& direction, double step, PathWorkspace& workspace,

@@ -10,8 +10,8 @@
 namespace snare::numerics {
 
 /// What a motion spends: evaluations of its equations in the window that is open. Counts and no times of the
-/// clock, so that the same
-/// input ends at the same step everywhere. Goes through checkpoints.                         theory.md (M.30)
+/// clock, so that the same input ends at the same step everywhere. Goes through checkpoints.
+///                                                                                           theory.md (M.30)
 struct Effort {
   long evaluations = 0;  ///< of the residual since the window began
   double since = 0.0;    ///< when it began [s]
@@ -41,8 +41,8 @@ class Progress {
   static constexpr int sampled = 16;  // one step in so many is looked at
   double least_;
   long steps_ = 0;
-  std::array<std::map<int, long>, step_limits>
-      limited_;  // steps that were looked at, by what limited them and by block
+  // steps that were looked at, by what limited them and by block
+  std::array<std::map<int, long>, step_limits> limited_;
 };
 
 }  // namespace snare::numerics

@@ -5,8 +5,8 @@ namespace snare::numerics {
 QuasiNewton::QuasiNewton(Eigen::Index size, int most) : steps_(size, most), squares_(most) {}
 
 void QuasiNewton::update(Eigen::Ref<Eigen::VectorXd> step, const Eigen::Ref<const Eigen::VectorXd>& weight) {
-  constexpr double most_share =
-      0.7;  // of a correction that the next one repeats: beyond it says little about the matrix
+  // of a correction that the next one repeats: beyond it says little about the matrix
+  constexpr double most_share = 0.7;
   work_ = weight.cwiseProduct(step);
   const auto share = [&](Eigen::Index i) { return steps_.col(i).dot(work_) / squares_[i]; };
   if (kept_ > 0) {

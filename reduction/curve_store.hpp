@@ -26,8 +26,8 @@ struct CurvePlace {
 /// of the travel and unloaded.
 struct PushedCurve {
   std::vector<double> loading;  ///< force [N], one a travel
-  std::vector<double>
-      unloading;  ///< on the way back, at the same travels; empty where nothing dissipates [N]
+  /// On the way back, at the same travels; empty where nothing dissipates [N].
+  std::vector<double> unloading;
   double discretisation_error = 0.0;  ///< largest estimate over the curve [N]
   double largest_strain = 0.0;        ///< of the wire [-]
   double dissipated = 0.0;            ///< by friction on the pusher over load and unload [J]
@@ -41,8 +41,8 @@ using SamplingObserver = std::function<bool(std::size_t finished, std::size_t wa
 /// Told what a journal that cannot be written suffers.
 using JournalTrouble = std::function<void(const std::string& what)>;
 
-/// Curves of one case of a wire, each solved once, in parallel, and journalled: a run that was killed goes on
-/// from the journal, and gives the same bytes, because numbers in it read back to the same doubles.
+/// Curves of one case of a wire, each solved once, in parallel, and journalled: a run that was killed
+/// continues from the journal, and gives the same bytes, because numbers in it read back to the same doubles.
 class CurveStore {
  public:
   /// travel: ascending from 0 [m]. journal: file to which finished curves are appended; none when empty. What

@@ -15,8 +15,8 @@ namespace snare::reduction {
 namespace {
 
 constexpr double start_distance = 1e-4;  // of the pusher from first touch [m]
-constexpr double most_periods =
-    40.0;  // half periods of mass and secant stiffness within which it must have left
+// half periods of mass and secant stiffness within which it must have left
+constexpr double most_periods = 40.0;
 constexpr int steps_a_half_period = 2000;
 constexpr int samples_a_half_period = 200;
 

@@ -42,7 +42,7 @@ struct LawRebound {
 };
 
 /// m d'' = -max(0, L(d) + c d') from d = 0 at the given speed until d = 0 again. Classical Runge-Kutta, some
-/// thousand steps. mass > 0 [kg], speed > 0 [m/s], damping >= 0 [N s/m]. Beyond its last knot L goes on as
+/// thousand steps. mass > 0 [kg], speed > 0 [m/s], damping >= 0 [N s/m]. Beyond its last knot L continues as
 /// there.
 [[nodiscard]] LawRebound rebound(const numerics::HermiteCurve& law, double damping, double mass,
                                  double speed);

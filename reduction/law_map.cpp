@@ -13,8 +13,8 @@ namespace snare::reduction {
 namespace {
 
 constexpr double pretension_strain = 1e-3;
-constexpr double reach =
-    3.0;  // of the travel asked for: the simple laws come near where the wire is well taut
+// of the travel asked for: the simple laws come near where the wire is well taut
+constexpr double reach = 3.0;
 
 LawMapRow row_at(coupling::PushProblem test, double slack, const std::vector<double>& travel,
                  const DistilSettings& settings) {

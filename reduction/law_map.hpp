@@ -13,8 +13,8 @@ struct LawMapRow {
   double natural_height = 0.0;  ///< of the wire before the push [m]
   std::vector<double> full;  ///< force of the full wire, one a travel; short where the solve ended early [N]
   std::vector<double> stretched;  ///< Honda et al., eq. 1, at the wire's own EA, length and height [N]
-  std::vector<double>
-      tensioned;  ///< k(EI, T, s) d with the tension before the push, none in a loose wire [N]
+  /// k(EI, T, s) d with the tension before the push, none in a loose wire [N].
+  std::vector<double> tensioned;
 };
 
 /// Laws without fitted numbers beside the full wire, at one position; see map_laws.

@@ -24,16 +24,16 @@ namespace snare::reduction {
 struct AdamsSplines {
   std::string text;
   std::vector<double> place_errors;  ///< against the full wire's curve, one a law position [N]
-  double surface_error =
-      0.0;  ///< against the table [N]; errors are those of the worse of AKISPL and linear interpolation
+  /// Against the table [N]; errors are those of the worse of AKISPL and linear interpolation.
+  double surface_error = 0.0;
 };
 [[nodiscard]] AdamsSplines adams_splines(const DistilledCase& one, const std::string& title);
 
 /// law_simulink.csv, for a block that interpolates linearly in two inputs, as Simulink's 2-D Lookup Table
 /// does.
 struct LookupTable {
-  std::string
-      csv;  ///< an empty cell and positions [m]; below travel [m] and forces [N] at the slack of the wire
+  /// An empty cell and positions [m]; below travel [m] and forces [N] at the slack of the wire.
+  std::string csv;
   double largest_error = 0.0;  ///< of linear interpolation against the table, between the knots [N]
 };
 [[nodiscard]] LookupTable lookup_table(const DistilledCase& one);

@@ -15,10 +15,10 @@ namespace {
 
 constexpr int most_pieces = 16;
 constexpr double beyond_travel = 2.0;  // end of the rows over the end of the travel
-constexpr double touch_width =
-    1e-2;  // of the first cell: distance from the last row without contact to first touch
-constexpr double beyond_mounts =
-    0.1;  // of the span: columns with the values at the mounts, so that linear readers keep them
+// of the first cell: distance from the last row without contact to first touch
+constexpr double touch_width = 1e-2;
+// of the span: columns with the values at the mounts, so that linear readers keep them
+constexpr double beyond_mounts = 0.1;
 constexpr int columns_to_a_mount = 4;  // from the end of the positions, for each piece
 
 /// The knots of an axis with `pieces` even pieces between them.

@@ -38,8 +38,7 @@ struct Dissipation {
   double absorbed = 0.0;     ///< energy taken up by loading [J]
   double loss_factor = 0.0;  ///< loop/(2 pi stored), stored = absorbed - loop/2 [-]
   /// c w of the dashpot that loses as much in one cycle over the whole travel d: loop = pi c w (d/2)^2 [N/m].
-  /// Friction does
-  /// not know the rate: the damping c follows only for a stated angular rate w.
+  /// Friction does not know the rate: the damping c follows only for a stated angular rate w.
   double damping_times_rate = 0.0;
 };
 [[nodiscard]] Dissipation dissipation(const numerics::HermiteCurve& loading,

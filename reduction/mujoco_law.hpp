@@ -35,8 +35,8 @@ struct MujocoLoop {
   std::vector<MujocoSpring> springs;
   std::vector<MujocoSlider> sliders;
   double energy = 0.0;  ///< lost in a repeated cycle over the whole travel [J]
-  double largest_error =
-      0.0;  ///< of both branches of that cycle against the load/unload law, turns left out [N]
+  /// Of both branches of that cycle against the load/unload law, turns left out [N].
+  double largest_error = 0.0;
 };
 
 /// The law at one position as MuJoCo can have it.

@@ -223,8 +223,8 @@ std::string identifier(const std::string& name) {
 struct MujocoTarget::Parts {
   XmlText xml;
   const XmlElement* body = nullptr;
-  const XmlElement* joint =
-      nullptr;  // the only one, a slide joint of a body that stands still otherwise; null: another body
+  // the only one, a slide joint of a body that stands still otherwise; null: another body
+  const XmlElement* joint = nullptr;
   MujocoTie tie;
 
   Parts(const MujocoTarget& target, const MujocoMeeting& meeting, const MujocoLaw& law)

@@ -12,8 +12,8 @@ namespace snare::reduction {
 /// Where and how a body of a user's model meets the wire.
 struct MujocoMeeting {
   std::string body;  ///< name in the model
-  std::optional<Eigen::Vector3d>
-      axis;  ///< of the push, in the frame of the body; none: that of its slide joint, else y
+  /// Of the push, in the frame of the body; none: that of its slide joint, else y.
+  std::optional<Eigen::Vector3d> axis;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< that meets the wire, in the frame of the body [m]
   double advance = 0.0;                             ///< travel from the model's pose to first touch [m], >= 0
 };

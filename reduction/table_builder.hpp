@@ -31,8 +31,8 @@ inline constexpr double bound_factor = 1.5;
 /// A table with its error. `report` is not usable where the sampling ended early; then there is no table.
 struct BuiltTable {
   std::unique_ptr<coupling::ForceTable> loading;
-  std::unique_ptr<coupling::ForceTable>
-      unloading;  ///< from the end of the travel; null where nothing dissipates
+  /// From the end of the travel; null where nothing dissipates.
+  std::unique_ptr<coupling::ForceTable> unloading;
   TableError loading_error, unloading_error;
   int rounds = 0;          ///< of refinement
   std::size_t curves = 0;  ///< of the full wire behind it, with those of the check
@@ -44,10 +44,8 @@ struct BuiltTable {
 [[nodiscard]] std::vector<double> sampling_travel(const WireCase& wire, const DistilSettings& settings);
 
 /// Places knots where a cubic spline through them errs most, along pilot lines through the range; solves the
-/// nodes; checks
-/// in the middle of every cell, of its faces and of its edges; adds knots while the bound is above the
-/// tolerance and the
-/// largest number of knots allows.                                                      theory.md (R.2)-(R.5)
+/// nodes; checks in the middle of every cell, of its faces and of its edges; adds knots while the bound is
+/// above the tolerance and the largest number of knots allows.                          theory.md (R.2)-(R.5)
 [[nodiscard]] BuiltTable build_table(CurveStore& store, const DistilSettings& settings,
                                      const SamplingObserver& observer = {});
 

@@ -64,8 +64,7 @@ struct WireFile {
 };
 
 /// Travel from first touch at which the wire, taken as two straight pieces at mid-span, is stretched by the
-/// strain that
-/// metals bear elastically (0.2 %, the usual proof strain): the default end of the travel [m].
+/// strain that metals bear elastically (0.2 %, the usual proof strain): the default end of the travel [m].
 ///                                                                                            theory.md (R.1)
 [[nodiscard]] double default_travel(const coupling::PushProblem& test);
 

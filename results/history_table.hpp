@@ -34,7 +34,7 @@ void fields(Archive& archive, History& history) {
 class HistoryTable final : public TableSink {
  public:
   /// columns: by name, in the order in which they are kept; none: all. every: of so many rows the first is
-  /// kept, counted anew where the first cell is another text than before: of a run or a series that follows
+  /// kept, counted again where the first cell is another text than before: of a run or a series that follows
   /// another.
   HistoryTable(std::vector<std::string> columns, int every) : wanted_(std::move(columns)), every_(every) {}
 

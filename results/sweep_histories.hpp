@@ -33,7 +33,7 @@ class SweepHistories {
 
   /// Writes histories.h5 of a sweep that is at its end, and removes the files that it was made of. Throws
   /// std::runtime_error where it cannot be written or a history is missing; then the files stay, and the same
-  /// sweep goes on.
+  /// sweep continues.
   void join(const study::Journal& journal, std::uint64_t cases) const;
 
   /// Whether histories.h5 is there and is not as it was written: its cases count as missing.

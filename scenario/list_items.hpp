@@ -35,10 +35,10 @@ struct DeclaredWire {
   std::optional<PushModel> push;         ///< of a law of pushes
   /// What carries the ends; the world: they stand still.
   coupling::MotionCarrier from_carrier, to_carrier;
-  std::optional<coupling::RoundWall>
-      wall;  ///< of the housing about it, its centre in the world: along its axis where the wire is or not
-  std::optional<coupling::CentreLine>
-      line;  ///< in the world, on which it begins; none: at rest between its mounts
+  /// Of the housing about it, its centre in the world: along its axis where the wire is or not.
+  std::optional<coupling::RoundWall> wall;
+  /// In the world, on which it begins; none: at rest between its mounts.
+  std::optional<coupling::CentreLine> line;
 };
 
 /// The wire for which a law stands, in its place but without a shaft.

@@ -44,8 +44,8 @@ using EndKinds = std::array<Kind, 2>;
 /// Points of the line on which a wire begins, in the world.
 struct StartPoints {
   std::string file;  ///< as the table names it; empty: straight from `from_mm` to `to_mm`
-  coupling::LinePoints
-      points;  ///< coordinates of the unstretched wire, or before its length is known along the line
+  /// Coordinates of the unstretched wire, or before its length is known along the line.
+  coupling::LinePoints points;
   bool is_material = false;  ///< whether the file has given them
 };
 

@@ -18,7 +18,7 @@ inline constexpr double most_outputs = 1e6;               ///< lines of a histor
 /// What a window of work must bring a motion on by [s]: see
 /// docs/decisions/interruption-and-faults.md#runs-that-stall.
 inline constexpr double least_advance = 0.002;
-/// Its key: when to give up makes no difference to what a run that goes on computes.
+/// Its key: when to give up makes no difference to what a run that continues computes.
 inline constexpr std::string_view least_advance_key = "solver.least_advance_s";
 inline constexpr double farthest_mm = 1e5;  ///< of anything from anything [mm]
 

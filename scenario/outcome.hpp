@@ -11,8 +11,7 @@
 namespace snare::scenario {
 
 /// What counts as caught: the axis of a shaft passes through the space that the wires of a snare enclose, and
-/// the shaft hardly
-/// moves against the snare, from some time to the end.                                       theory.md (M.25)
+/// the shaft hardly moves against the snare, from some time to the end.                      theory.md (M.25)
 struct CaptureTest {
   PlacedFrame shaft;       ///< z along its axis
   PlacedFrame snare;       ///< the fixed ring, z along its axis

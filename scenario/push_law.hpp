@@ -17,8 +17,7 @@
 namespace snare::scenario {
 
 /// What stands for a wire whose mounts stand still to each other, and that a shaft pushes across its chord: a
-/// table that was distilled
-/// from it, or a law of one place.                                                           theory.md (M.27)
+/// table that was distilled from it, or a law of one place.                                  theory.md (M.27)
 struct PushModel {
   double side = 1.0;         ///< of the push: 1 with the bulge, -1 against it [-]
   coupling::ContactLaw law;  ///< of one place; empty: the table

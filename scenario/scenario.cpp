@@ -69,8 +69,8 @@ void require_lists(const std::filesystem::path& file, const TomlNode& root) {
 }  // namespace
 
 Scenario read_scenario(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
-  std::vector<base::Override> own =
-      overrides;  // less those of the list of parts, and those of the arms' files
+  // less those of the list of parts, and those of the arms' files
+  std::vector<base::Override> own = overrides;
   const TomlNode written = read_with_parts(file, own);
   const ArmOverrides arms = take_arm_overrides(own);
   TomlNode looked_at = written;

@@ -5,8 +5,8 @@
 namespace snare::scenario {
 
 /// `[[snares]]`: a fixed and a turning ring with wires between, on a carriage or not, within a housing's wall
-/// or not. Adds them to
-/// the composition, to be placed with all else; their wires and walls follow.  theory.md (M.24)
+/// or not. Adds them to the composition, to be placed with all else; their wires and walls follow.
+///                                                                                           theory.md (M.24)
 class Snares {
  public:
   explicit Snares(Composition& composition);

@@ -20,8 +20,8 @@ struct NamedMotion {
   std::string model;  ///< what stands for the wires: "wire", or a law's name
   coupling::Motion motion;
   coupling::MotionOptions options;
-  std::vector<std::string>
-      warnings;  ///< about what was read as it stands and likely meant otherwise: units of meshes and arms
+  /// About what was read as it stands and likely meant otherwise: units of meshes and arms.
+  std::vector<std::string> warnings;
 };
 
 /// What pictures show of a shape or a ring: lines that a carrier takes along.

@@ -18,8 +18,8 @@ struct TrackScore {
   /// where |q| first reaches a threshold, less the reference's, in the unit of x; none: one of them does not
   std::optional<double> touch;
   bool same_touch = true;  ///< both reach the threshold, or neither
-  double covered =
-      1.0;  ///< share of the reference's range of x that the track has [-]; the others are of this share
+  /// Share of the reference's range of x that the track has [-]; the others are of this share.
+  double covered = 1.0;
 };
 
 /// Against a reference of at least two rows. `threshold`: of |q|, in its unit; none: touches are not looked

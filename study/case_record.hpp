@@ -11,12 +11,12 @@ namespace snare::study {
 
 /// What is kept of a case that was run.
 struct CaseRecord {
-  std::string
-      status;  ///< "done", or why there are no values: "failed", "refused", "stalled", "broken", "lost"
+  /// "done", or why there are no values: "failed", "refused", "stalled", "broken", "lost".
+  std::string status;
   std::string reason;  ///< where it is not done
   double seconds = 0.0;
-  std::vector<nlohmann::json>
-      fields;  ///< one a collected field: number, boolean, text or null; none where it is not done
+  /// One a collected field: number, boolean, text or null; none where it is not done.
+  std::vector<nlohmann::json> fields;
   std::vector<double> values;  ///< of the variables, where the design does not say them
 
   [[nodiscard]] bool done() const noexcept { return status == "done"; }  ///< the case has a result

@@ -28,8 +28,8 @@ class RefinedGrid {
     bool refined = true;       ///< else all its points are run: a list of things that have no order
   };
   struct Settings {
-    std::vector<Axis>
-        axes;  ///< the last one fastest; 1 to most_axes of them refined, at most most_points points in all
+    /// The last one fastest; 1 to most_axes of them refined, at most most_points points in all.
+    std::vector<Axis> axes;
     int levels = 1;           ///< halvings, >= 1
     double differs_by = 0.0;  ///< numbers that are no farther apart agree, in the quantity's unit
   };

@@ -23,8 +23,8 @@ inline constexpr double least_effective_rows = 10.0;
 
 /// Indices of all variables, with what they were computed from.
 struct SobolIndices {
-  std::vector<SobolIndex>
-      of;  ///< one a variable; empty below two replicates with whole rows and below least_effective_rows
+  /// One a variable; empty below two replicates with whole rows and below least_effective_rows.
+  std::vector<SobolIndex> of;
   double mean = 0.0;            ///< of the field, in its unit
   double variance = 0.0;        ///< of the field, in its unit squared
   double effective_rows = 0.0;  ///< rows, as many as equal shares would need, of which the variance consists

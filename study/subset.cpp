@@ -175,8 +175,8 @@ ProbabilityInterval SubsetSimulation::interval_of_threshold() const {
   if (levels_.size() == 1) return proportion_interval(hits_, seeds_ * length_);
   if (hits_ == 0) return {0.0, threshold_interval_.high};  // no more probable than the threshold before
   constexpr double tail = 0.025;
-  const double freedom =
-      1.0 / family_squares_;  // the mean is over all cases of the first level and costs none of them
+  // the mean is over all cases of the first level and costs none of them
+  const double freedom = 1.0 / family_squares_;
   const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(freedom), tail));
   const double factor = std::exp(t * std::sqrt(std::log1p(variation() * variation())));
   return {probability() / factor, std::min(1.0, probability() * factor)};

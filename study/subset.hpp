@@ -47,8 +47,7 @@ class SubsetSimulation {
   [[nodiscard]] bool reached() const noexcept { return reached_; }
   [[nodiscard]] double probability() const noexcept;
   /// Coefficient of variation, by the scatter over the families of cases that descend from one case of the
-  /// first level: it contains the
-  /// correlation along chains and between levels.                                             theory.md (S.5)
+  /// first level: it contains the correlation along chains and between levels.                theory.md (S.5)
   [[nodiscard]] double variation() const noexcept;
   /// 95 % interval of the probability. With one level that of a share; with more, Student's t in the
   /// logarithm, with as many degrees of freedom as there are effective families. Where the event was not

@@ -27,9 +27,9 @@ struct BlindSet {
 /// How the readings of a blind set are taken, and what of them the laboratory does not know.
 struct BlindDesign {
   int readings_a_leg = 20;  ///< a divisor of 40, or more; sizes are counted over 20
-  double length_deviation =
-      0.0;  ///< standard deviation of the wire's length about the declared one [m]; where it is
-            ///< > 0 the length is freed as well
+  /// Standard deviation of the wire's length about the declared one [m]; where it is.
+  double length_deviation = 0.0;
+  ///< > 0 the length is freed as well
   double position_deviation = 0.0;  ///< of every push's position about the declared one [m]; declared as well
   /// Of three pushes so many records each, every one with a deviation of its own that goes with the force and
   /// is correlated over a quarter of the travel, 1 % of it, beside the noise; nothing of this is declared. 1:

@@ -28,8 +28,8 @@ struct BlindWire {
   double mount_axial_compliance = 0.0;       ///< of each mount along the chord [m/N], >= 0
   double mount_rotational_compliance = 0.0;  ///< of each clamp [rad/(N m)], >= 0
   double mount_slip_tension = std::numeric_limits<double>::infinity();  ///< T_s of a mount [N], > 0
-  bool mount_slides =
-      false;  ///< the mount slides along the chord with the wire; else the wire feeds through it
+  /// The mount slides along the chord with the wire; else the wire feeds through it.
+  bool mount_slides = false;
   bool mount_slips_right = false;  ///< it is the right mount; else the left one
 
   double misalignment = 0.0;       ///< of the pusher's motion a [rad]: along (sin a, cos a)

@@ -44,8 +44,8 @@ double zero_of(const Function& f, double low, double high) {
 }  // namespace
 
 // Tangent to a shaft of radius r (with the wire's) at theta_t = 2 acos(r/R), a wire is 2 sqrt(R^2 - r^2) + r
-// (theta - theta_t) long
-// when it is taut; its tension gives the angle of the ring, and n of them its torque, n T r.           (M.24)
+// (theta - theta_t) long when it is taut; its tension gives the angle of the ring, and n of them its torque,
+// n T r.                                                                                               (M.24)
 std::vector<Row> tight_ring_rows(const std::filesystem::path& data) {
   const ScenarioRun run = run_of(data / "scenarios/snare_on_pin.toml",
                                  {as_strings, "duration_s=2.0", "damping.axial_time_s=0.001",

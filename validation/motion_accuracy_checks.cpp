@@ -287,8 +287,8 @@ std::vector<Row> friction_reversal_rows() {
 std::vector<Row> snap_through_rows() {
   constexpr double position = 80.0 * mm;
   constexpr double pace = 20.0 * mm;  // [m/s]
-  constexpr int elements =
-      200;  // a body meets the wire between vertices, the static push at one: 1e-3 apart with 100
+  // a body meets the wire between vertices, the static push at one: 1e-3 apart with 100
+  constexpr int elements = 200;
   SlowPush p = slow_push(position, elements, 0.0, coupling::PushDirection::inward);
   const double touch = touch_height(p);
   coupling::MotionBody& pusher = p.motion.bodies[0];

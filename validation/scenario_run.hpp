@@ -31,7 +31,7 @@ struct ScenarioRun {
 /// Time of the first touch of a contact [s]; `not_computed` without one.
 [[nodiscard]] double first_touch(const coupling::MotionResult& result, int contact);
 
-/// Puts strings in the place of the wires of a snare called "snare".
+/// Puts strings instead of the wires of a snare called "snare".
 inline const std::string as_strings = "snares[snare].wire.model=\"stretched\"";
 
 }  // namespace snare::validation

@@ -10,8 +10,8 @@
 namespace snare::wire {
 
 /// Unit tangents [-] of the centreline at the left and the right end of a rod, in the sense of increasing arc
-/// length, of second order in
-/// the edge. They differ from the mount's direction at pins and where a clamp gives in rotation.
+/// length, of second order in the edge. They differ from the mount's direction at pins and where a clamp
+/// gives in rotation.
 ///                                                                                           theory.md (W.36)
 [[nodiscard]] std::array<Eigen::Vector2d, 2> end_tangents(const PlanarRod& rod, const PlanarState& state);
 /// The same in space [-].

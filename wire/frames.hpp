@@ -29,7 +29,7 @@ template <class S>
                                                       const numerics::Vector3<S>& to);
 
 /// The director of a frame that is carried from one unit tangent to another without turning about it; it is
-/// made perpendicular and of unit length anew, so that round-off does not add up over many steps.
+/// made perpendicular and of unit length again, so that round-off does not add up over many steps.
 template <class S>
 [[nodiscard]] numerics::Vector3<S> transported(const numerics::Vector3<S>& director,
                                                const numerics::Vector3<S>& from,

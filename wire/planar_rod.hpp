@@ -30,8 +30,8 @@ struct PlanarEnd {
 
 /// Constants of a planar rod.
 struct PlanarRodProperties {
-  double bending_stiffness =
-      0.0;  ///< EI [N m^2], > 0; beside `bending_sliders` the part that is elastic for good
+  /// EI [N m^2], > 0; beside `bending_sliders` the part that is elastic for good.
+  double bending_stiffness = 0.0;
   double axial_stiffness = 0.0;                ///< EA [N], > 0; likewise
   std::vector<SliderElement> bending_sliders;  ///< on curvature less the natural one
   std::vector<SliderElement> axial_sliders;    ///< on the axial strain

@@ -18,8 +18,8 @@ struct SliderElement {
 struct SectionResponse {
   double resultant = 0.0;  ///< moment [N m] or axial force [N]
   double tangent = 0.0;    ///< d resultant / d strain
-  double energy =
-      0.0;  ///< stored, plus what slipping dissipates on the way from the memory, a unit length [J/m]
+  /// stored, plus what slipping dissipates on the way from the memory, a unit length [J/m].
+  double energy = 0.0;
 };
 
 /// Elastic spring beside sliders (Masing 1926, Iwan 1967).                           theory.md (W.13)

@@ -13,7 +13,7 @@
 
 namespace snare::wire {
 
-/// One edge of a spatial rod, or the direction of a mount in the place of one.
+/// One edge of a spatial rod, or the direction of a mount instead of one.
 struct SpatialEdge {
   Eigen::Vector3d tangent;      ///< unit
   double length = 1.0;          ///< [m]
@@ -71,7 +71,7 @@ template <class S>
 void add_twisting(const S& tau, const S& l, double flexibility, const CellTerms& terms,
                   SpatialCellOf<S>& cell);
 
-/// Edge e at a state, between its vertices; and a mount in the place of an edge, with its direction and
+/// Edge e at a state, between its vertices; and a mount instead of an edge, with its direction and
 /// directors if it orients.
 [[nodiscard]] SpatialEdge edge_at(int e, const MaterialMesh& mesh, const SpatialState& state,
                                   const CellTerms& terms);

@@ -12,8 +12,8 @@ enum class Construction { solid, strand };
 
 /// Friction between the strands of a rope in bending: beside EI, the bending stiffness with slipping strands,
 /// a stiffness that acts until the curvature has changed by slip_curvature and slides then; or whose shares
-/// slide one
-/// after the other, the logarithms of their curvatures evenly spread over 2 breadth.         theory.md (W.13)
+/// slide one after the other, the logarithms of their curvatures evenly spread over 2 breadth.
+///                                                                                           theory.md (W.13)
 struct StrandFriction {
   double extra_stiffness = 0.0;  ///< of all while they stick [N m^2], > 0
   double slip_curvature = 0.0;   ///< the middle one, in logarithms [1/m], > 0

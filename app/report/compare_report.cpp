@@ -14,8 +14,8 @@ using namespace results;
 
 namespace {
 
-constexpr double far_off =
-    0.5;  // of the range of the force: the error of a model that would dwarf the others
+// of the range of the force: the error of a model that would dwarf the others
+constexpr double far_off = 0.5;
 
 /// What to show first where a model is far off: all of the others.
 void close_up(PlotSpecification& plot, const std::vector<double>& shown, bool dwarfed) {

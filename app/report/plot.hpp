@@ -37,8 +37,8 @@ struct Band {
 
 /// One curve of a plot. x need not be sorted: load and unload, closed outlines.
 struct Curve {
-  std::string
-      name;  ///< in the legend; empty: belongs to the named curve before it (its pusher, its other half)
+  /// In the legend; empty: belongs to the named curve before it (its pusher, its other half).
+  std::string name;
   std::vector<double> x;
   std::vector<double> y;  ///< as long as x
   CurveStyle style = CurveStyle::line;

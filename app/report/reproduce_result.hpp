@@ -53,10 +53,10 @@ struct Reproduction {
   std::vector<ReproducedModel> models;  ///< in the order in which they are shown, the declared one first
   std::optional<identification::Trace> trace;
   std::optional<identification::SummaryStatistics> summary;  ///< of the best fit; none without published fits
-  std::map<int, identification::SummaryStatistics>
-      by_digits;  ///< the same with R2 printed to so many decimals
-  std::shared_ptr<const nlohmann::json>
-      map;  ///< of how the fits may have come about, results/published_map.hpp; or null
+  /// The same with R2 printed to so many decimals.
+  std::map<int, identification::SummaryStatistics> by_digits;
+  /// Of how the fits may have come about, results/published_map.hpp; or null.
+  std::shared_ptr<const nlohmann::json> map;
   std::optional<RefittedLeader> leader;  ///< of the map
   std::vector<std::string> warnings;     ///< doubts about the models
   bool interrupted = false;              ///< only a part of the result was computed

@@ -215,8 +215,7 @@ double ForceTable::force(double travel, double position, double slack) const noe
 
 // Outside the range the force continues linearly in each of the three: along the travel with the stiffness of
 // its end, along the position up to the mounts and constant beyond them. A continued force is never negative
-// and never falls along the travel: where it would, it keeps its
-// largest value so far.                                                                      theory.md (R.12)
+// and never falls along the travel: where it would, it keeps its largest value so far.       theory.md (R.12)
 LawValue ForceTable::at(double travel, double position, double slack, Outside outside) const {
   if (travel < 0.0) return {};
   std::array<double, 3> x = reduced(travel, position, slack);

@@ -17,11 +17,11 @@ enum class ContactFriction {
 /// a G*, 0.4 um at 10 N): small beside every travel of interest, large beside the tolerances.
 struct MotionFriction {
   double static_coefficient = 0.0;  ///< >= 0: up to static_speed [-]
-  double dynamic_coefficient =
-      0.0;  ///< from dynamic_speed on, >= 0; at most the static one with stick and slip [-]
+  /// From dynamic_speed on, >= 0; at most the static one with stick and slip [-].
+  double dynamic_coefficient = 0.0;
   double static_speed = 1e-3;  ///< smooth: below it the friction falls to zero [m/s], > 0. stick_slip: >= 0
-  double dynamic_speed =
-      1.0;  ///< [m/s], > static_speed; stick_slip: both 0 let the slip have the dynamic one at once
+  /// [m/s], > static_speed; stick_slip: both 0 let the slip have the dynamic one at once.
+  double dynamic_speed = 1.0;
   ContactFriction law = ContactFriction::stick_slip;
   double bristle_displacement = 1e-6;  ///< of the bristle when it slides [m], > 0
   double bristle_time = 1e-5;          ///< dashpot over spring of the bristle [s], > 0

@@ -10,8 +10,8 @@
 namespace snare::coupling {
 
 /// A solid bounded by triangles. The distance is that to the nearest point of the surface, its sign that of
-/// the side of the nearest
-/// face, edge or vertex by the angle-weighted normal there (Baerentzen, Aanaes 2005).  theory.md (G.4), (G.5)
+/// the side of the nearest face, edge or vertex by the angle-weighted normal there (Baerentzen, Aanaes 2005).
+///                                                                                     theory.md (G.4), (G.5)
 ///
 /// Hessian by the nearest feature: 0 over a face, 1/distance across an edge, 1/distance in both directions at
 /// a vertex: the surface at the distance of a wire's radius rounds the convex edges and is once

@@ -14,8 +14,8 @@ Eigen::Vector2d left_of(const Eigen::Vector2d& v) {
 }
 
 double SlipWork::over(double next, double from, double to) const {
-  constexpr double shortest =
-      0.1;  // of the step before, over this one: from a shorter one no parabola is known
+  // of the step before, over this one: from a shorter one no parabola is known
+  constexpr double shortest = 0.1;
   const double length = std::abs(next), before = std::abs(slip);
   const double straight = 0.5 * (from + to) * length;
   if (slip * next <= 0.0 || before < shortest * length) return straight;

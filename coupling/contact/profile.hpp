@@ -9,15 +9,14 @@ namespace snare::coupling {
 /// One edge of a profile, from the end of the one before: a straight line or the minor arc of a circle.
 struct ProfileEdge {
   Eigen::Vector2d end = Eigen::Vector2d::Zero();  ///< (distance from the axis, height z) [m]
-  double curvature =
-      0.0;  ///< [1/m]; > 0 bulges outward, < 0 inward, 0: straight; at most 2/(length of the chord)
+  /// [1/m]; > 0 bulges outward, < 0 inward, 0: straight; at most 2/(length of the chord).
+  double curvature = 0.0;
 };
 
 /// The section of a solid of revolution in the half plane (rho, z), bounded by straight edges and arcs.
 ///
 /// It runs upward with the outside on its right: from the lower end on the axis to the upper one, or, where
-/// the solid has a hole
-/// along its axis, round a loop back to its start.                                            theory.md (G.3)
+/// the solid has a hole along its axis, round a loop back to its start.                       theory.md (G.3)
 class Profile {
  public:
   /// Edges one after the other, counted on from the first through the start of a loop.
@@ -40,8 +39,8 @@ class Profile {
   /// All its edges: once round a loop, else from end to end on the axis.
   [[nodiscard]] Chain whole() const { return {0, static_cast<int>(edges_.size())}; }
   /// What is left between its concave corners when arcs that are hollow with a radius of `wire_radius` [m] or
-  /// less, in which no such
-  /// wire fits, are left out. Between them these chains are nearest to whatever is farther out than that.
+  /// less, in which no such wire fits, are left out. Between them these chains are nearest to whatever is
+  /// farther out than that.
   ///                                                                                         theory.md (G.11)
   [[nodiscard]] std::vector<Chain> chains(double wire_radius) const;
   /// p: (rho, z) [m].

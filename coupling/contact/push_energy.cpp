@@ -21,7 +21,8 @@ struct Cubic {
         by_twice{(12 * t - 6) / (h * h), (6 * t - 4) / h, (6 - 12 * t) / (h * h), (6 * t - 2) / h} {}
 };
 
-/// Integral, value and slope of a curve at x >= 0, which goes on straight beyond its last knot.
+/// Integral, value and slope of a curve at x >= 0, which continues along a straight line beyond its last
+/// knot.
 std::array<double, 3> along(const numerics::HermiteCurve& curve, double x) {
   const double end = curve.knots().back();
   const double inside = std::min(x, end), beyond = x - inside;

@@ -11,7 +11,7 @@ namespace snare::coupling {
 ///                                                                                    theory.md (R.2), (M.27)
 ///   U(d, s) = integral of F(x, s) dx from 0 to d
 /// exact for the table, whose force at one slack is a bicubic of travel and position. Beyond the travel the
-/// force goes on straight, beyond the positions as at the outermost.
+/// force continues along a straight line, beyond the positions as at the outermost.
 class PushEnergy {
  public:
   /// slack: within the table's range, to which it is held [m].

@@ -25,8 +25,8 @@ struct Cup {
   double inner_radius = 0.0;  ///< [m], > 0
   double depth = 0.0;         ///< [m], > 0
   double thickness = 0.0;     ///< of wall and floor [m], > 0
-  double rounding =
-      0.0;  ///< of the rims of the mouth and of the floor's outer one [m], >= 0, at most half the thickness
+  /// Of the rims of the mouth and of the floor's outer one [m], >= 0, at most half the thickness.
+  double rounding = 0.0;
   double fillet = 0.0;  ///< of the concave corner between wall and floor [m], >= 0
 };
 /// Throws InputError.

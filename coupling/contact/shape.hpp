@@ -20,8 +20,7 @@ struct DistanceField {
 ///
 /// Outside, phi is once differentiable everywhere but on the shape's outer medial surface, and twice but
 /// where the nearest feature changes (face to edge, edge to vertex): there the Hessian jumps between finite
-/// values, as the curvature of
-/// the surface at the distance of the wire's radius does.                                     theory.md (G.2)
+/// values, as the curvature of the surface at the distance of the wire's radius does.         theory.md (G.2)
 class ContactShape {
  public:
   ContactShape() = default;
@@ -53,8 +52,8 @@ class ContactShape {
 };
 
 /// The pieces of a shape for a wire of a radius [m], >= 0, or the shape itself. All are in the shape's frame;
-/// a wire touches each on
-/// its own: in the corner between two it has a gap and a normal to both.                     theory.md (G.10)
+/// a wire touches each on its own: in the corner between two it has a gap and a normal to both.
+///                                                                                           theory.md (G.10)
 [[nodiscard]] std::vector<std::shared_ptr<const ContactShape>> pieces_of(
     const std::shared_ptr<const ContactShape>& shape, double wire_radius = 0.0);
 

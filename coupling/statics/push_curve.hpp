@@ -38,8 +38,8 @@ struct PushPoint {
   double normal_force = 0.0;      ///< of the pusher on the wire, all contact points together [N], >= 0
   double friction_force = 0.0;    ///< along the wire, the same way [N]; |friction| <= mu normal
   double axial_force = 0.0;       ///< on the pusher along z, where it is tilted [N]
-  double tension_left =
-      0.0;  ///< axial force in the wire at the left mount, tension positive [N]: theory.md (W.36)
+  /// Axial force in the wire at the left mount, tension positive [N]: theory.md (W.36)
+  double tension_left = 0.0;
   double tension_right = 0.0;    ///< at the right mount [N]
   double largest_tension = 0.0;  ///< along the wire, its ends included, tension positive [N]
   /// Force of a mount, or of a support, on the wire [N]: along the chord from the left mount to the right

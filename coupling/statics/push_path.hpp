@@ -45,8 +45,8 @@ class PushPath : public RememberingPath {
                                             const std::string& message) const;
   [[nodiscard]] numerics::SolveReport follow_to(double target) { return follow(*this, target, control_); }
   void note(PushEvent::Kind kind) { curve_.events.push_back({kind, point_.parameter}); }
-  /// Adds a point with the iterations since the one before. One with a number that is none is not added and
-  /// ends the run.
+  /// Adds a point with the iterations since the one before. One with a value that is not a number is not
+  /// added and ends the run.
   void add(PushPoint point);
 
   const PushOptions& options_;

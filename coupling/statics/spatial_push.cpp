@@ -174,8 +174,8 @@ numerics::SolveReport SpatialPush::leave_plane() {
 // wire that its weight pulls across the plane hangs there. Follows the path down by secants of the force,
 // none of them much longer than the last, and shifts the pin so that travel 0 is where the force is zero.
 numerics::SolveReport SpatialPush::find_first_touch(double seat) {
-  constexpr double left =
-      0.02;  // share of a secant that is not gone: without force a loose wire swings freely
+  // share of a secant that is not gone: without force a loose wire swings freely
+  constexpr double left = 0.02;
   const double finest = 1e-5 * seat;
   double upper_force = force_along(point_);
   double upper = point_.parameter;

@@ -350,7 +350,7 @@ std::vector<std::string> read_names(const TomlTable& table, std::string_view key
   return names;
 }
 
-/// A number of its own for every series: series[NAME].KEY in the place of KEY.
+/// A number of its own for every series: series[NAME].KEY instead of KEY.
 void add_per_series(const TomlTable& fit, const std::vector<std::string>& keys,
                     const std::vector<std::string>& names, std::vector<std::string>& free) {
   for (std::size_t i = 0; i < keys.size(); ++i) {

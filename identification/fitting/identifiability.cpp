@@ -17,10 +17,10 @@ using Eigen::VectorXd;
 
 constexpr double error_margin = 3.0;   // differences by two steps tell the size of an error, not its bound
 constexpr double least_margin = 1e-9;  // rounding of the columns, and of the decomposition
-constexpr double in_doubt =
-    1e-3;  // error of a direction, in columns of norm 1, from which a null one is checked
-constexpr double near_margin =
-    300.0;  // the same: below so many errors a direction that is seen is checked, too
+// error of a direction, in columns of norm 1, from which a null one is checked
+constexpr double in_doubt = 1e-3;
+// the same: below so many errors a direction that is seen is checked, too
+constexpr double near_margin = 300.0;
 constexpr double weakly_seen = 0.1;  // if its numbers nearly go together
 
 /// Singular directions of the columns `live`, scaled to norm 1, parted into those that the readings see and
@@ -154,8 +154,8 @@ Identifiability identifiability_of(const MatrixXd& jacobian, const MatrixXd& err
 
 void Identifiability::add_direction(std::size_t k, const std::vector<std::size_t>& others,
                                     const VectorXd& change, const MatrixXd& jacobian) {
-  constexpr double least_correlation =
-      0.3;  // with k: five standard errors of k move such a number by 1.5 of its own
+  // with k: five standard errors of k move such a number by 1.5 of its own
+  constexpr double least_correlation = 0.3;
   const auto held_row = static_cast<Index>(k);
   NullDirection direction{k, {}, VectorXd::Zero(change.size())};
   std::vector<bool> held(known.size(), false);

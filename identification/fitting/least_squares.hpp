@@ -24,8 +24,8 @@ struct Fit {
   double chi2 = 0.0;
   numerics::SolveReport report;
   double noise_dof = std::numeric_limits<double>::infinity();  ///< of the noise by which it is whitened
-  double estimated =
-      0.0;  ///< standard deviations that are estimated from the same data: those of published fits
+  /// Standard deviations that are estimated from the same data: those of published fits.
+  double estimated = 0.0;
   /// Degrees of freedom: whitened numbers less fitted ones and estimated standard deviations, may be
   /// negative.
   [[nodiscard]] double dof() const {
@@ -43,8 +43,8 @@ struct FitOptions {
   int max_iterations = 50;
   double tolerance = 1e-6;  ///< relative fall of chi2 below which the fit ends
   std::function<bool(int iteration, double chi2)> progress;  ///< false stops the fit
-  double rival =
-      0.0;  ///< chi2 to come near to: the fit ends where ten more iterations at its pace would not reach it
+  /// chi2 to come near to: the fit ends where ten more iterations at its pace would not reach it.
+  double rival = 0.0;
 };
 
 /// Weighted least squares by Ceres (Levenberg-Marquardt, bounds), from one start.      theory.md (I.1)
@@ -54,8 +54,8 @@ struct FitOptions {
 
 /// Fills `rank` of a usable fit: derivatives by twice the step tell the error of those that it has, and a
 /// direction that they leave in doubt is null where chi2 rises by less than 1 when the number that moves most
-/// is moved along it and held, all
-/// others refitted. With null directions the covariance becomes that of `rank`.              theory.md (I.32)
+/// is moved along it and held, all others refitted. With null directions the covariance becomes that of
+/// `rank`.                                                                                   theory.md (I.32)
 void find_rank(const Model& model, const Data& data, Fit& fit);
 
 /// Ends of the interval of one coordinate (in its unit) in which the profile of chi2 [-] (all others

@@ -59,11 +59,12 @@ class Model {
   /// Derivatives by factors of EI on windows of the wire, one a column: hat functions over `windows` evenly
   /// spread stations of the material between the mounts. Empty where the model is not differentiable.
   [[nodiscard]] Evaluation evaluate_windows(const std::vector<Setting>& settings, int windows) const;
-
- private:
+  /// Curves of the series of a model; those that `options.stop` ends are interrupted.
   [[nodiscard]] std::vector<Prediction> predict_with(
       const Applied& model, const PredictionOptions& options,
-      const std::vector<std::vector<coupling::PushVariation>>& variations) const;
+      const std::vector<std::vector<coupling::PushVariation>>& variations = {}) const;
+
+ private:
   /// Derivatives by the numbers of the test by differences of whole curves, into `result`.
   void difference_curves(std::vector<Setting> settings, const std::vector<const Parameter*>& by, double widen,
                          Evaluation& result) const;

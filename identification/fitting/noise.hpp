@@ -38,8 +38,8 @@ struct Noise {
   ///                                                                                                   (I.11)
   std::vector<std::optional<PublishedRows>> published;
   PublishedScatter scatter = PublishedScatter::common;  ///< of published fits
-  double estimated =
-      0.0;  ///< standard deviations of published fits that are estimated with the fitted numbers
+  /// Standard deviations of published fits that are estimated with the fitted numbers.
+  double estimated = 0.0;
 
   /// Whether only a fit was published of a series, so that it has four numbers and no readings.
   [[nodiscard]] bool summarised(std::size_t series) const { return !published.empty() && published[series]; }

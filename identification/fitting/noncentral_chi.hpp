@@ -10,8 +10,7 @@ struct IntervalProbability {
 };
 
 /// Probability that the length |v + e| of a vector lies in an interval, e independent normal of standard
-/// deviation sigma in
-/// every component: sigma times a noncentral chi variable.                                   theory.md (I.11)
+/// deviation sigma in every component: sigma times a noncentral chi variable.                theory.md (I.11)
 ///   f(t) = t^(k-1) 2^(1-k/2) / Gamma(k/2) exp(-(t^2 + m^2)/2) 0F1(; k/2; (m t)^2/4),
 ///     t = |v + e|/sigma, m = |v|/sigma
 /// The logarithm is exact to 1e-6 relative in P, far in the tails as well.

@@ -20,8 +20,8 @@ struct Prediction {
   coupling::ExtrapolatedCurve curve;  ///< at the travels after first touch, in order
   std::vector<double> force;          ///< recorded force [N], one a displacement that was reached
   TrueForce wire;                     ///< of which it is the record, likewise
-  Eigen::MatrixXd
-      force_by;  ///< d wire.force / d number: a row a displacement, a column a variation asked for
+  /// d wire.force / d number: a row a displacement, a column a variation asked for.
+  Eigen::MatrixXd force_by;
   std::vector<double> mount_pull;  ///< of the wire on the left mount along the chord, one a displacement [N]
   ReadingModel reading;            ///< as it was predicted with
   std::size_t before_touch = 0;    ///< points that lie before first touch: they have no entry in `curve`

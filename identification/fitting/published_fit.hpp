@@ -43,9 +43,9 @@ inline constexpr double least_bootstrap_p = 1.0 / (published_replicates + 1);
 /// How the published fits of some of a model's series are compared with it.
 struct SummaryOptions {
   PublishedScatter scatter = PublishedScatter::common;
-  int replicates =
-      published_replicates;  ///< of the bootstrap, >= 99; P is a multiple of 1 / (replicates + 1)
-  bool bootstrap = true;     ///< else p is 1 and the scatter is that of greatest likelihood
+  /// Of the bootstrap, >= 99; P is a multiple of 1 / (replicates + 1).
+  int replicates = published_replicates;
+  bool bootstrap = true;  ///< else p is 1 and the scatter is that of greatest likelihood
 };
 
 /// Fits the first `free` of `settings` to the published numbers by maximum likelihood, from where they are,

@@ -21,8 +21,7 @@ namespace snare::identification {
                                        int digits);
 
 /// The numbers that a paper prints of one series, as data: three coefficients and an interval for the sum of
-/// squares about
-/// them.                                                                                     theory.md (I.11)
+/// squares about them.                                                                       theory.md (I.11)
 struct PublishedNumbers {
   Eigen::Vector3d coefficients = Eigen::Vector3d::Zero();  ///< Q^T of the printed parabola [N]
   double lower = 0.0;  ///< sqrt(SSE) at the largest R2 that rounds to the printed one [N], >= 0

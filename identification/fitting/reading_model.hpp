@@ -14,8 +14,8 @@ struct ReadingModel {
   /// Of a Kelvin-Voigt wire, N = EA (e + tau de/dt) and so in bending, to first order in tau [s], >= 0; acts
   /// where the record has times.                                                    theory.md (W.14), (I.2)
   double relaxation_time = 0.0;
-  double travel_bow =
-      0.0;  ///< b_d, recorded less true travel at half of the largest one, as a share of that [-]
+  /// b_d, recorded less true travel at half of the largest one, as a share of that [-].
+  double travel_bow = 0.0;
   double force_bow =
       0.0;             ///< b_F, recorded less true force at half of the largest one, as a share of that [-]
   double lag = 0.0;    ///< by which the record of the force is behind that of the travel [s]

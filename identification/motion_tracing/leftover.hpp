@@ -8,8 +8,7 @@
 namespace snare::identification {
 
 /// How much of what is left over hangs on one thing: a function of it, of twenty steps, found on every other
-/// twentieth of the time and
-/// tried on the rest. Nothing of it is added to the model.                                   theory.md (I.24)
+/// twentieth of the time and tried on the rest. Nothing of it is added to the model.         theory.md (I.24)
 struct Leftover {
   std::string sensor;  ///< channel whose residual it is
   std::string on;      ///< "time", "value", "rate", "direction", or another channel

@@ -14,8 +14,7 @@ namespace snare::identification {
 /// ... a half. Of the class that one of them names each member is fitted to the whole records; the one that
 /// leaves least there counts, if that is at most a half of the sum of squares, and the first that is in step
 /// with them ends the search. `start`: the fitted numbers, from which each of the passes begins. Without such
-/// an
-/// effect nothing is added. A share of which a piece would have fewer than 20 readings is not asked.
+/// an effect nothing is added. A share of which a piece would have fewer than 20 readings is not asked.
 ///                                                                                           theory.md (I.29)
 [[nodiscard]] RoundResult round_from_beginnings(const RoundInput& input,
                                                 const std::vector<RecordSetting>& start);

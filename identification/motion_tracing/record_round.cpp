@@ -14,11 +14,11 @@ namespace snare::identification {
 namespace {
 
 constexpr std::size_t most_refits = 5;  // of effects that come out within their physical range
-constexpr std::size_t most_tried =
-    15;  // with those that do not: what is missing may be hidden behind many that imitate it in part
+// with those that do not: what is missing may be hidden behind many that imitate it in part
+constexpr std::size_t most_tried = 15;
 constexpr double promising = 0.3;  // of the best promise: what falls less is not refitted
-constexpr double good_part =
-    0.2;  // of the motion, as roots of sums of squares: a fit that leaves it is out of step
+// of the motion, as roots of sums of squares: a fit that leaves it is out of step
+constexpr double good_part = 0.2;
 constexpr double least_fall = 1e-4;    // share of the misfit below which a refit has not moved
 constexpr int enough_iterations = 12;  // to compare effects; the one that is named is fitted to the end
 constexpr double apart = 2.0;  // deviates by which the misfits of two refits must differ to be told apart

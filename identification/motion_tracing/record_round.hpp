@@ -36,8 +36,7 @@ struct RoundResult {
 };
 
 /// Whether what a fit leaves is a good part of the motion itself: predictions that have fallen out of step
-/// with the readings, and derivatives
-/// there that lead to no better ones.                                                        theory.md (I.29)
+/// with the readings, and derivatives there that lead to no better ones.                     theory.md (I.29)
 [[nodiscard]] bool out_of_step(const RecordData& data, const RecordFit& fit);
 
 /// Scores, refits of the most promising, classes by what the refits predict, and the effect to add, if any:

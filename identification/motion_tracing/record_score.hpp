@@ -19,8 +19,8 @@ struct RecordScore {
   double z = 0.0;            ///< normal deviate of that p
   double fall = 0.0;         ///< of the sum of squares that it promises, to first order
   double chance = 0.0;       ///< fall that noise alone would bring, in the mean
-  std::vector<std::size_t>
-      numbers;  ///< of the effect's those that these records show, and that the others do not do as well
+  /// Of the effect's those that these records show, and that the others do not do as well.
+  std::vector<std::size_t> numbers;
   std::vector<double> start;  ///< of these numbers, for a refit
   std::vector<double> scale;  ///< at which they were tried
   std::optional<double>
@@ -32,8 +32,8 @@ struct RecordScore {
 /// What the tests of one round rest on.
 struct RecordScores {
   std::vector<RecordScore> scores;
-  ColouredNoise
-      noise;  ///< of what is left when all columns at once are taken out: of that no effect is a part
+  /// Of what is left when all columns at once are taken out: of that no effect is a part.
+  ColouredNoise noise;
 };
 
 /// Tests of all effects at a level `significance` (for what would be detected). The size of the trial follows

@@ -48,8 +48,8 @@ struct RecordStage {
   std::vector<TracedNumber> numbers;
   std::vector<OpenNumbers> open;     ///< null directions of the records
   std::vector<ChannelError> errors;  ///< of the fitted records
-  std::vector<ChannelError>
-      heldout;  ///< of the others; numbers of every record for itself are fitted to them, nothing else
+  /// Of the others; numbers of every record for itself are fitted to them, nothing else.
+  std::vector<ChannelError> heldout;
   double rmse = 0.0,
          nrmse = 0.0;     ///< over the fitted channels: in the unit of the only one, else over their scales
   double chi2_dof = 0.0;  ///< against the noise
@@ -98,13 +98,13 @@ struct RecordTrace {
   std::vector<RecordRound> rounds;
   std::vector<std::string> selected;  ///< labels
   std::vector<std::size_t> selected_effects;
-  std::vector<std::string>
-      partial;  ///< labels of effects that help without explaining: none of them is named
+  /// Labels of effects that help without explaining: none of them is named.
+  std::vector<std::string> partial;
   std::optional<RecordStage> with_partial;
   VerdictKind kind = VerdictKind::nothing_missing;
   double share_left = 0.0;  ///< of what the base leaves beside the noise, as mean squares [-]
-  std::string
-      channel;  ///< of the first effect selected; not explained: the sensor with most beside its noise
+  /// Of the first effect selected; not explained: the sensor with most beside its noise.
+  std::string channel;
   std::vector<Leftover> leftovers;
   std::vector<Profile> profiles;      ///< of the numbers for which they are asked, in the final model
   std::vector<ModelFamily> families;  ///< of the base fit, as the file lists them

@@ -104,8 +104,8 @@ class Tracer {
         trace_.profiles.push_back(std::move(found));
       }
     }
-    constexpr double worth_a_word =
-        0.1;  // of a deviate squared: no interval moves by a twentieth of its width
+    // of a deviate squared: no interval moves by a twentieth of its width
+    constexpr double worth_a_word = 0.1;
     for (const Profile& p : trace_.profiles) {
       if (p.fall > worth_a_word)
         trace_.warnings.push_back(fmt::format(

@@ -25,8 +25,8 @@ struct FitCell {
   std::vector<double> travel;  ///< [m]
   Eigen::MatrixXd basis;       ///< Q^T of quadratic_basis, (3, n)
   PublishedNumbers numbers;
-  double log_scale =
-      0.0;  ///< log |d(Q^T y)/d(A, B, C)|: the density of the printed numbers, from that of their projections
+  /// Log |d(Q^T y)/d(A, B, C)|: the density of the printed numbers, from that of their projections [-].
+  double log_scale = 0.0;
   double log_scatter = 0.0;  ///< log of the standard deviation about the printed parabola [N]
 };
 

@@ -304,8 +304,8 @@ FitRanges fit_ranges(const Experiment& experiment, const MapOptions& options) {
 std::vector<HypothesisMap> published_map(const Experiment& experiment, const FitRanges& ranges,
                                          const std::vector<Hypothesis>& hypotheses,
                                          const MapOptions& options) {
-  constexpr double rival =
-      12.0;  // of the logarithm of the evidence: hypotheses farther behind need no precision
+  // of the logarithm of the evidence: hypotheses farther behind need no precision
+  constexpr double rival = 12.0;
   bool stopped = false;
   double leading = impossible;
   const auto goes_on = [&](const std::string& stage) {

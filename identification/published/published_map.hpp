@@ -22,8 +22,8 @@ struct PriorNumber {
 struct Hypothesis {
   std::string name;     ///< "mount_axial_compliance"
   std::string meaning;  ///< "the mounts give way along the wire"
-  std::string
-      family;  ///< of hypotheses that do the same to published fits: "along_the_wire"; else its own name
+  /// Of hypotheses that do the same to published fits: "along_the_wire"; else its own name.
+  std::string family;
   std::vector<PriorNumber> numbers;
   void (*change)(coupling::PushProblem&) = nullptr;  ///< of the declared test, or null
 };
@@ -50,8 +50,8 @@ struct HypothesisMap {
   std::vector<MapCell> cells;
   std::vector<PosteriorPoint> posterior;
   double effective = 0.0;  ///< computed tests that count: the evidence is known to one part in its root
-  std::vector<std::vector<double>>
-      likely;  ///< numbers of the computed tests with most weight, the first of all
+  /// Numbers of the computed tests with most weight, the first of all.
+  std::vector<std::vector<double>> likely;
   double log_evidence[2] = {
       0.0, 0.0};  ///< ranges and numbers integrated out: ranges even in their logarithm, and in themselves
   double probability[2] = {0.0, 0.0};  ///< among all hypotheses

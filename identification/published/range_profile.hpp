@@ -21,8 +21,8 @@ struct ByScatter {
 struct RangeProfile {
   /// log p, by range and number of readings; of a bin the mean over it, even in the logarithm of the range
   std::vector<double> log;
-  std::vector<double>
-      best_to;  ///< of a bin, likewise: the range in it with the largest p [m]; 0 where nothing is possible
+  /// Of a bin, likewise: the range in it with the largest p [m]; 0 where nothing is possible.
+  std::vector<double> best_to;
   double largest = impossible;  ///< of p over all ranges and numbers of readings
 };
 

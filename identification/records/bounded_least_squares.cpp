@@ -14,11 +14,11 @@ namespace {
 // Numbers that hang together need small dampings: along their valley a larger one takes steps of nothing.
 constexpr double least_damping = 1e-12, first_damping = 1e-9;
 constexpr double most_damping = 1e6;
-constexpr double another =
-    0.3;  // of a step that failed, in what it promises to change: what differs less fails as well
+// of a step that failed, in what it promises to change: what differs less fails as well
+constexpr double another = 0.3;
 constexpr int most_tries = 12;
-constexpr double next_to_minimum =
-    0.1;  // of the fall by chance: a third of a standard error, and a step leads nearer
+// of the fall by chance: a third of a standard error, and a step leads nearer
+constexpr double next_to_minimum = 0.1;
 constexpr int small_falls_to_end = 2;  // one alone may be a step that was held back
 constexpr double poor_fall = 0.5;  // of what was promised: the derivatives are no longer those of this place
 

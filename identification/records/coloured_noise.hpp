@@ -9,8 +9,7 @@
 namespace snare::identification {
 
 /// Residuals of a simulation hang together in time. Of every channel an autoregression, by Burg's method over
-/// its records together, its
-/// order (0 to 30) by the Bayesian criterion:                                                theory.md (I.21)
+/// its records together, its order (0 to 30) by the Bayesian criterion:                      theory.md (I.21)
 ///   e_t = sum_k a_k e_(t-k) + w_t,   w white of variance s^2.
 struct Autoregression {
   Eigen::VectorXd coefficients;

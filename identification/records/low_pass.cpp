@@ -42,8 +42,8 @@ Eigen::VectorXd low_passed(const Eigen::VectorXd& values, double interval, doubl
   const double warped = std::tan(std::numbers::pi * cutoff * interval);
   const std::array<Section, 2> sections{Section(warped, 0.5 / std::cos(std::numbers::pi / 8.0)),
                                         Section(warped, 0.5 / std::cos(3.0 * std::numbers::pi / 8.0))};
-  constexpr double periods =
-      6.0;  // of the cutoff: the ringing has died out to exp(-2 pi 6 cos 67.5 deg), a millionth
+  // of the cutoff: the ringing has died out to exp(-2 pi 6 cos 67.5 deg), a millionth
+  constexpr double periods = 6.0;
   const Eigen::Index beyond =
       std::min(n - 1, static_cast<Eigen::Index>(std::ceil(periods / (cutoff * interval))));
   Eigen::VectorXd all(n + 2 * beyond);

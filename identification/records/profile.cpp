@@ -13,8 +13,8 @@ namespace {
 
 constexpr int most_points = 16;      // on one side
 constexpr double most_growth = 4.0;  // of a step over the one before
-constexpr double close =
-    0.02;  // of the deviate: the limit is read between two points that are that near, or by the secant
+// of the deviate: the limit is read between two points that are that near, or by the secant
+constexpr double close = 0.02;
 constexpr double first_target = 1.0;  // deviates: one on the way to the limit
 const double limit_deviate = std::sqrt(profile_rise_95);
 
@@ -107,7 +107,7 @@ class Side {
   double fall = 0.0;
 
  private:
-  /// Root of the rise where the number is held, the others fitted anew; nothing where that cannot be
+  /// Root of the rise where the number is held, the others fitted again; nothing where that cannot be
   /// simulated.
   std::optional<double> deviate_at(double value) {
     options_.fixed.back().value = value;

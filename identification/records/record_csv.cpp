@@ -12,8 +12,8 @@ namespace snare::identification {
 
 namespace {
 
-constexpr double most_at_end =
-    0.5;  ///< share of the readings that may stand at the largest or the smallest value
+/// Share of the readings that may stand at the largest or the smallest value.
+constexpr double most_at_end = 0.5;
 constexpr std::size_t longest_chance_run =
     4;                               ///< readings at an end of the range that noise never makes the same
 constexpr double most_beyond = 4.0;  ///< steps of the sensor: a turn that its steps hide is one at most

@@ -55,8 +55,8 @@ struct RecordFit {
   std::vector<RecordSetting> settings;
   std::vector<RecordPrediction> predictions;
   Eigen::VectorXd residual;
-  Eigen::MatrixXd
-      jacobian;  ///< of the signal by the numbers, each over its scale: as RecordFitOptions::derivatives
+  /// Of the signal by the numbers, each over its scale: as RecordFitOptions::derivatives.
+  Eigen::MatrixXd jacobian;
   Eigen::MatrixXd covariance;  ///< of the numbers in their units, of residuals that are correlated
   Identifiability rank;        ///< which numbers the records determine; empty where find_rank() was not asked
   double chi2 = 0.0;           ///< sum of squares of the residual

@@ -14,7 +14,8 @@ inline constexpr const char* record_schema = "snare-record/1";
                                   const std::vector<base::Override>& overrides);
 
 /// Reads a record file and its CSV files. Throws InputError with everything that is wrong: keys, columns,
-/// times that do not ascend, gaps, numbers that are none, records that are constant, saturated or too short.
+/// times that do not ascend, gaps, values that are not numbers, records that are constant, saturated or too
+/// short.
 [[nodiscard]] RecordSet read_records(const std::filesystem::path& file,
                                      const std::vector<base::Override>& overrides = {});
 

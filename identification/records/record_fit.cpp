@@ -234,8 +234,8 @@ double noise_of(const RecordData& data, const RecordFit& optimum) {
 /// moves, at most that far.
 Move move_along(const RecordData& data, const RecordFit& optimum, const Eigen::VectorXd& direction,
                 Eigen::Index held, double share) {
-  constexpr double far =
-      20.0;  // scales, a fifth of a declared number: far beyond its standard error, were it known
+  // scales, a fifth of a declared number: far beyond its standard error, were it known
+  constexpr double far = 20.0;
   Move move;
   move.held = held;
   const double by_scale =
@@ -312,7 +312,7 @@ Move carried_on(Move move, double share, const std::vector<ValleyPoint>& points)
 }
 
 /// Follows the valley of chi2 from the answer to one side (1 or -1): number k is held at points along
-/// `direction`, the others are fitted anew. Steps are shorter where nothing can be simulated. Returns the
+/// `direction`, the others are fitted again. Steps are shorter where nothing can be simulated. Returns the
 /// last point: the end of the way, or where it ends before.
 ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
                           const Eigen::VectorXd& direction, Eigen::Index k, double side) {
@@ -336,13 +336,13 @@ ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, cons
 
 /// A point to one side of the answer at which chi2 has not risen as the interval of number k promises; none
 /// where it has, or where the way ends, at a bound or where nothing can be simulated, before that could be
-/// told. Where half the way chi2 rises along a straight line as in a linear model nothing is fitted anew,
+/// told. Where half the way chi2 rises along a straight line as in a linear model nothing is fitted again,
 /// unless the numbers nearly go together: a valley that the derivatives miss by a little rises, too.
 std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordData& data,
                                          const RecordFit& optimum, const Eigen::VectorXd& direction,
                                          Eigen::Index k, double side) {
-  constexpr double can_tell =
-      2.0;  // change of the residual: a rise by its square, 4, is told from none, below 1.8
+  // change of the residual: a rise by its square, 4, is told from none, below 1.8
+  constexpr double can_tell = 2.0;
   const Eigen::VectorXd effect =
       optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs();
   const bool go_together = (optimum.jacobian * direction).norm() < 0.1 * effect.maxCoeff();

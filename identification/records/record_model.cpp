@@ -159,8 +159,8 @@ std::vector<base::Override> RecordModel::keys_of(const std::vector<RecordSetting
   std::vector<base::Override> overrides = set_.set;
   const Record& r = set_.records[record];
   overrides.insert(overrides.end(), r.set.begin(), r.set.end());
-  std::vector<std::pair<std::size_t, std::string>>
-      counted_above;  // an override, and the key above which it is counted
+  // an override, and the key above which it is counted
+  std::vector<std::pair<std::size_t, std::string>> counted_above;
   for (std::size_t k = 0; k < count; ++k) {
     const RecordSetting& s = settings[k];
     if (!s.number.overrides || (s.number.record && *s.number.record != record)) continue;

@@ -48,7 +48,7 @@ struct JointUse {
 class RecordModel {
  public:
   /// stop: asked during simulations; true: leave them. Throws InputError for a scenario without sensors, or
-  /// that lacks one of the channels, and for keys of free numbers that are none.
+  /// that lacks one of the channels, and for keys of free values that are not numbers.
   explicit RecordModel(const RecordSet& set, std::function<bool()> stop = {});
 
   [[nodiscard]] const RecordSet& records() const { return set_; }  ///< as read

@@ -33,8 +33,8 @@ struct RecordNumber {
   double declared = 0.0;
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
   double scale = 1.0;  ///< a change of this size is small and can be seen, > 0
-  bool scale_follows =
-      false;  ///< steps of differences are those of the value where it is larger than declared
+  /// Steps of differences are those of the value where it is larger than declared.
+  bool scale_follows = false;
   std::optional<std::size_t> record;  ///< the one to which it belongs; none: all
   /// Keys of the scenario with this value, in a record where numbers stand as `record` says: as it declares
   /// them, or as those before this one set them. Either this or `signal`.

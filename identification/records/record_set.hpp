@@ -66,8 +66,8 @@ struct RecordSet {
   std::vector<Record> records;
   std::vector<FreeNumber> free;
   FitMethod method = FitMethod::gauss_newton;
-  double simplex_change =
-      0.0;  ///< relative change of the numbers with which the simplex ends, (I.30); 0: none
+  /// Relative change of the numbers with which the simplex ends, (I.30); 0: none.
+  double simplex_change = 0.0;
   std::optional<double> tolerance;  ///< share of a channel's rms below which nothing is called missing
   int most_effects = 4;
   std::vector<RecordFamily> families;

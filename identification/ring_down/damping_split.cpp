@@ -135,7 +135,7 @@ Combined combine(const Line& line, const std::vector<Index>& columns, double lea
   result.dof = n - best.numbers;
   if (result.dof > 0) result.misfit_p = chi_square_tail(best.chi2, result.dof);
   if (result.misfit_p >= least_p) return result;
-  // The share is known from as many degrees of freedom: Student's t in the place of the normal quantile.
+  // The share is known from as many degrees of freedom: Student's t instead of the normal quantile.
   const VectorXd scatter = scatter_of(line, columns);
   const SplitSolution widened = least_squares(line, scatter, columns);
   result.solution = admissible(line, scatter, columns);

@@ -16,10 +16,10 @@ struct ChannelFunction {
   std::vector<double> at;         ///< stations of the argument, in its unit
   std::vector<double> value;      ///< of the function there, in the unit of `effect`
   std::vector<double> deviation;  ///< standard deviation of the values
-  double carried_over =
-      0.0;  ///< share of the excess of chi2 that functions found without a group of series explain
-            ///< in that group (cross-validation by position and by slack); <= 1, may be
-            ///< negative; 0 where there is one of each: then channels cannot be told
+  /// Share of the excess of chi2 that functions found without a group of series explain.
+  double carried_over = 0.0;
+  ///< in that group (cross-validation by position and by slack); <= 1, may be
+  ///< negative; 0 where there is one of each: then channels cannot be told
   double explained = 0.0;  ///< share of the excess of chi2 that the function explains in all series
   double chi2 = 0.0;       ///< with the function, all series, to first order
   double chi2_dof = 0.0;   ///< the same over its degrees of freedom

@@ -218,8 +218,8 @@ void leave_kinks(const Model& model, const Data& data, Fit& base, Progress& prog
     return;
   constexpr int most_rounds = 3;
   constexpr double worthwhile = 1e-3;  // of chi2
-  constexpr double smooth_share =
-      0.5;  // of its rise in a smooth valley, below which there may be another minimum
+  // of its rise in a smooth valley, below which there may be another minimum
+  constexpr double smooth_share = 0.5;
   for (int round = 0; round < most_rounds; ++round) {
     const Fit from = base;
     for (Eigen::Index k = 0; k < from.covariance.cols(); ++k) {

@@ -43,8 +43,7 @@ void add_hats(double share, double weight, Eigen::Index count, Eigen::Index firs
                                                           const Fit& current);
 
 /// P that the noise alone leaves as much in the direction of some smooth function of the channel [-]: the
-/// score test of its
-/// variance,                                                                         theory.md (I.8)
+/// score test of its variance,                                                                theory.md (I.8)
 ///   Q = r^T C K C^T r,  C the columns with the fitted ones projected out,  K_ij = exp(-(i - j)^2 / (2 l^2)),
 ///   l = 2.5.
 [[nodiscard]] double channel_p(const ChannelColumns& channel, const Fit& current);

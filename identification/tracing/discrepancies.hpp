@@ -9,8 +9,8 @@ namespace snare::identification {
 
 /// An unknown smooth function of one variable that all series share, which the model lacks: a Gaussian
 /// process on hats at even stations, Matern 5/2 with lengths of 0.15, 0.3 and 0.6 of the variable's range.
-/// Its constant and its straight part are left out:
-/// effects of the catalogue have these (offsets, gains, zeros).                            theory.md (I.37)
+/// Its constant and its straight part are left out, which effects of the catalogue have (offsets, gains,
+/// zeros).                                                                                 theory.md (I.37)
 struct Discrepancy {
   /// What the function hangs on: "force", "travel", "time", "place" (along the wire), "leg" (up or down),
   /// "series" (each its own factor), or "other" (a function of its own for each series).

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 namespace snare::identification {
 
@@ -21,8 +22,8 @@ using Eigen::VectorXd;
 // Shares of the prior.                                                                   theory.md (I.37)
 constexpr double of_nothing = 0.2, of_catalogue = 0.45, of_outside = 0.25, of_other = 0.1;
 constexpr double of_one_more = 0.1;  // of a second cause beside the first
-const double least_size =
-    std::log(0.3);  // ln of the least size of a cause, in standard deviations of a reading
+// Ln of the least size of a cause, in standard deviations of a reading
+const double least_size = std::log(0.3);
 
 double log_sum(const std::vector<double>& logs) {
   const double largest = *std::ranges::max_element(logs);
@@ -167,22 +168,19 @@ class Evidence {
         row += n;
       }
     }
+    MatrixXd rest(all.rows(), 1 + columns.cols());
+    rest << all.col(0), all.rightCols(columns.cols());
     if (numbers > 0) {
       const numerics::ThinSvd svd = numerics::thin_svd(all.middleCols(1, numbers));
       w.logarithm += (1.0 + svd.s.array().square()).log().sum();
-      MatrixXd rest(all.rows(), 1 + columns.cols());
-      rest << all.col(0), all.rightCols(columns.cols());
       // Directions that the prior holds tighter than the readings do not take anything away.
       const VectorXd share = (svd.s.array().square() / (1.0 + svd.s.array().square())).matrix();
       rest -= svd.U * (share.asDiagonal() * (svd.U.transpose() * rest));
-      w.squares = rest.col(0).squaredNorm();
-      w.normal = rest.rightCols(columns.cols()).transpose() * rest.rightCols(columns.cols());
-      w.along = rest.rightCols(columns.cols()).transpose() * rest.col(0);
-    } else {
-      w.squares = all.col(0).squaredNorm();
-      w.normal = all.rightCols(columns.cols()).transpose() * all.rightCols(columns.cols());
-      w.along = all.rightCols(columns.cols()).transpose() * all.col(0);
     }
+    const auto functions = rest.rightCols(columns.cols());
+    w.squares = rest.col(0).squaredNorm();
+    w.normal = functions.transpose() * functions;
+    w.along = functions.transpose() * rest.col(0);
     return w;
   }
 
@@ -227,7 +225,7 @@ double prior_of(const std::vector<std::string>& effects) {
   return prior;
 }
 
-/// Prior of one function beside the base model.
+/// Prior of one function added to the base model.
 double prior_of(const std::string& variable, const std::vector<Discrepancy>& all) {
   std::map<std::string, double> variables;
   for (const Discrepancy& d : all) variables[d.variable] += 1.0;
@@ -260,9 +258,9 @@ std::vector<CauseHypothesis> weigh_hypotheses(const Model& model, const Data& da
   for (const FittedModel& m : models)
     all.push_back({m.effects, "", std::log(prior_of(m.effects)) + evidence.of(m.fit), 0.0});
   std::vector<std::size_t> order(models.size());
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t k) { return all[k].log_evidence; });
-  constexpr std::size_t most = 3;  // models with effects beside which functions stand
+  constexpr std::size_t most = 3;  // models with effects to which functions are added
   std::size_t taken = 0;
   for (const std::size_t k : order) {
     if (models[k].effects.empty() || taken++ < most)
@@ -274,17 +272,6 @@ std::vector<CauseHypothesis> weigh_hypotheses(const Model& model, const Data& da
   for (CauseHypothesis& h : all) h.probability = std::exp(h.log_evidence - sum);
   std::ranges::stable_sort(all, std::greater<>(), &CauseHypothesis::log_evidence);
   return all;
-}
-
-double probability_of_any(const std::vector<CauseHypothesis>& hypotheses,
-                          const std::vector<std::string>& names) {
-  double sum = 0.0;
-  for (const CauseHypothesis& h : hypotheses) {
-    const bool any = std::ranges::any_of(
-        h.effects, [&](const std::string& e) { return std::ranges::find(names, e) != names.end(); });
-    if (any) sum += h.probability;
-  }
-  return sum;
 }
 
 OutsideCause outside_cause(const std::vector<CauseHypothesis>& hypotheses) {

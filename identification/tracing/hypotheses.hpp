@@ -12,8 +12,8 @@ namespace snare::identification {
 struct CauseHypothesis {
   std::vector<std::string> effects;  ///< of the catalogue
   std::string discrepancy;           ///< variable of an unknown function, see Discrepancy; empty: none
-  double log_evidence =
-      0.0;  ///< of the readings, its own prior included, up to a constant of all hypotheses [-]
+  /// Of the readings, its own prior included, up to a constant of all hypotheses [-].
+  double log_evidence = 0.0;
   double probability = 0.0;  ///< of all hypotheses [-]
 };
 
@@ -26,19 +26,15 @@ struct FittedModel {
 /// Weighs hypotheses by their marginal likelihoods, best first; the probabilities sum to one.
 ///                                                                                           theory.md (I.37)
 /// models: the base model first. Noise: as the data have it, independent or autocorrelated within a series;
-/// its size is marginalised where it is not declared. Unknown functions stand beside the base model and
-/// beside the three best models with effects. Empty for published fits.
+/// its size is marginalised where it is not declared. Unknown functions are added to the base model and to
+/// the three best models with effects. Empty for published fits.
 [[nodiscard]] std::vector<CauseHypothesis> weigh_hypotheses(const Model& model, const Data& data,
                                                             const std::vector<FittedModel>& models);
-
-/// Probability that an effect of `names` is among the causes [-].
-[[nodiscard]] double probability_of_any(const std::vector<CauseHypothesis>& hypotheses,
-                                        const std::vector<std::string>& names);
 
 /// The unknown function that is likeliest among the hypotheses without effects.
 struct OutsideCause {
   std::string variable;      ///< empty: there is none
-  double probability = 0.0;  ///< of all hypotheses in which an unknown function stands without effects [-]
+  double probability = 0.0;  ///< of all hypotheses with an unknown function and no effect [-]
 };
 [[nodiscard]] OutsideCause outside_cause(const std::vector<CauseHypothesis>& hypotheses);
 

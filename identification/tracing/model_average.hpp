@@ -23,8 +23,7 @@ struct NormalPart {
 using Interval = std::pair<double, double>;
 
 /// The 95 % interval of a fitted number whichever effect of a class is the right one: quantiles of the
-/// mixture of the normal
-/// distributions that the rivals of every round give it.                                 theory.md (I.13)
+/// mixture of the normal distributions that the rivals of every round give it.               theory.md (I.13)
 /// final: the model that is told; which: of its fitted settings, from 0. rounds: in which its effects were
 /// added.
 /// inflation: chi2 that it leaves over that of noise, >= 1 [-]. Absent where the readings do not tell the
@@ -34,8 +33,7 @@ using Interval = std::pair<double, double>;
                                                            double inflation);
 
 /// Likewise of a model beside which no effect was named, whether one is missing or not: its own distribution
-/// and, to first
-/// order, those with every effect that was asked for.                                        theory.md (I.13)
+/// and, to first order, those with every effect that was asked for.                          theory.md (I.13)
 [[nodiscard]] std::optional<Interval> interval_over_candidates(const Fit& final, std::size_t which,
                                                                const std::vector<Candidate>& candidates);
 

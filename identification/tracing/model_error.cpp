@@ -266,8 +266,8 @@ struct Squares {
 };
 
 Squares left_out(const Model& model, const Data& data, const Fit& fit, const Left& all) {
-  constexpr double least_told =
-      0.01;  // share of what all readings tell of a direction, below which the others do not predict it
+  // share of what all readings tell of a direction, below which the others do not predict it
+  constexpr double least_told = 0.01;
   const Eigen::MatrixXd directions = unit_directions(fit.jacobian);
   Squares squares;
   for (const std::vector<Eigen::Index>& out : left_out_conditions(model, data).rows) {

@@ -21,7 +21,7 @@ struct FittedNumber {
   std::optional<double> lower;
   std::optional<double> upper;
   bool profiled = false;  ///< profile likelihood
-  bool averaged = false;  ///< over the effects that may be the right ones in the place of what is selected
+  bool averaged = false;  ///< over the effects that may be the right ones instead of what is selected
   /// With every fitted number, itself among them, in their order; empty where there is no standard error.
   std::vector<double> correlation = {};
   AtBound bound = AtBound::none;  ///< on which it stands

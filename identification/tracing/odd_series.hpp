@@ -10,8 +10,8 @@ namespace snare::identification {
 
 /// Finds the one series whose removal lets the base model explain the others to their noise, if it is of
 /// another wire: with its own stiffnesses it is explained, too, and better than with its own zero, place,
-/// length, gain or offset. None if no series
-/// or several qualify, and with fewer than three. base: fit of all series.                 theory.md (I.36)
+/// length, gain or offset. None if no series or several qualify, and with fewer than three. base: fit of all
+/// series.                                                                                   theory.md (I.36)
 [[nodiscard]] std::optional<Finding> series_of_another_specimen(const Model& model, const Data& data,
                                                                 const Fit& base, Progress& progress);
 

@@ -11,8 +11,8 @@ namespace {
 constexpr double indistinct_chi2 = 6.0;  // difference below which the likelihood does not decide
 constexpr double as_well = 0.05;         // by which less of the excess may carry over
 constexpr double one_cause = 0.9;        // share carried over beside which several effects are not believed
-constexpr double rest_of_rival =
-    0.001;  // P below which an effect has left something in the direction of its rival
+// P below which an effect has left something in the direction of its rival
+constexpr double rest_of_rival = 0.001;
 
 /// Whether the function has this effect in it: it is of its channel, or one of its numbers where it has no
 /// slope.

@@ -10,8 +10,8 @@ namespace snare::identification {
 /// Causes that the catalogue does not have: those functions of one channel that explain what the base model
 /// leaves no worse than an effect does (chi2 of the fit with it [-]: `explained`), are accepted, and carry
 /// over to conditions left out as well as it does (a share of the excess [-], at most 1: `predicted`). Not
-/// those that a member of
-/// the effect's class (`names`) is in another dress: in its channel, or as the function without slope.
+/// those that a member of the effect's class (`names`) is in another dress: in its channel, or as the
+/// function without slope.
 ///                                                                                            theory.md (I.8)
 [[nodiscard]] std::vector<ChannelFunction> rivals_outside(const std::vector<ChannelFunction>& functions,
                                                           const std::vector<std::string>& names,

@@ -11,8 +11,8 @@ namespace snare::identification {
 
 namespace {
 
-constexpr double weight_from =
-    0.05;  // of the largest computed force: readings below it say nothing of the sign
+// of the largest computed force: readings below it say nothing of the sign
+constexpr double weight_from = 0.05;
 constexpr double nearly_all_turned = 0.8;  // of these readings
 
 /// Share of the readings whose sign is against that of the computed force, of those where it counts; nothing

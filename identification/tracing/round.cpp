@@ -17,9 +17,9 @@ namespace {
 
 constexpr double collinear = 0.95;         // |cos| above which effects are one class
 constexpr double same_direction = 0.9995;  // |cos| above which the refits of two effects end alike
-constexpr double indistinct_bic =
-    6.0;  // difference of BIC below which the likelihood does not decide (Kass and
-          // Raftery 1995); 98.6 % of a chi-square of one degree of freedom
+// difference of BIC below which the likelihood does not decide (Kass and
+constexpr double indistinct_bic = 6.0;
+// Raftery 1995); 98.6 % of a chi-square of one degree of freedom
 constexpr double separable_chi2 =
     10.0;                           // z^2 (1 - cos^2) above which a rival of the leader need not be refitted
 constexpr double least_fall = 0.9;  // of the root mean square error, which must fall below this share
@@ -34,8 +34,8 @@ constexpr double starts_tried = 10.0;  // an effect, by which the p of its refit
 // share of the best gain cannot lead and are not refitted.
 constexpr double refit_share = 0.4;
 constexpr double near_significance = 0.05;
-constexpr double most_ratio =
-    0.7;  // of the logarithm of a number that an effect moves, at the start of its refit
+// of the logarithm of a number that an effect moves, at the start of its refit
+constexpr double most_ratio = 0.7;
 // Of the excess of chi2 over the degrees of freedom: where a refit takes more, no other minimum can be much
 // better.
 constexpr double nearly_all = 0.95;

@@ -48,11 +48,11 @@ struct Round {
 struct RoundFits {
   Round round;
   Fit better;  ///< the model with the added effect
-  std::vector<Setting>
-      begun;  ///< the added effect's numbers as first tried, of one that has only finite trials
-  std::vector<Fit>
-      rivals;  ///< refits of the first effect's class, then all others that make sense, best first;
-               ///< without their curves
+  /// The added effect's numbers as first tried, of one that has only finite trials.
+  std::vector<Setting> begun;
+  /// Refits of the first effect's class, then all others that make sense, best first;
+  std::vector<Fit> rivals;
+  ///< without their curves
   std::vector<std::string> rival_names;  ///< of their effects
 };
 
@@ -64,8 +64,8 @@ struct Current {
   /// since. Beside another missing effect thresholds run astray, and what they are refitted from then holds
   /// them there. Empty: no such.
   std::vector<Setting> anew;
-  bool search =
-      false;  ///< every effect is looked for from finite sizes: a base model that leaves more than noise
+  /// Every effect is looked for from finite sizes: a base model that leaves more than noise.
+  bool search = false;
 };
 
 /// What an effect must bring to be named.

@@ -247,8 +247,8 @@ void Scoring::choose_starts(Score& score, std::vector<Trial>& trials) const {
     if (score.starts.size() == 2) break;
     if (scalable && trial.z < 0.7 * score.z) break;
     std::vector<double> start = trial.coordinates;
-    double seen =
-        0.0;  // of the trial's size; where that cannot be chosen the fitted numbers wait for the threshold
+    // of the trial's size; where that cannot be chosen the fitted numbers wait for the threshold
+    double seen = 0.0;
     if (scalable) {
       seen = std::clamp(trial.z / trial.size, 0.05, 5.0);
       start.front() = std::clamp(start.front() * seen, model_.lower(first), model_.upper(first));

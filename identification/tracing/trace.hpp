@@ -19,7 +19,7 @@ namespace snare::identification {
 
 /// All that a tracing has found, as trace.json tells it; usable or not says its report.
 struct Trace {
-  std::vector<Series> series;  ///< as used: a published law at its travels in the place of readings
+  std::vector<Series> series;  ///< as used: a published law at its travels instead of readings
   std::vector<bool> heldout;   ///< one a series
   Noise noise;
   std::optional<SerialNoise> serial;  ///< of the final model, where its residual is autocorrelated
@@ -41,14 +41,14 @@ struct Trace {
   std::vector<std::vector<std::string>> selected_classes;
   std::vector<std::string> partial;  ///< effects that were added but leave too much: not selected
   double partial_rmse = 0.0;
-  bool rival_explanation =
-      false;  ///< those effects would do, but one function of one channel is the simpler cause
+  /// Those effects would do, but one function of one channel is the simpler cause.
+  bool rival_explanation = false;
   VerdictKind kind = VerdictKind::not_explained;
   bool explained = false;  ///< nothing is missing, or the selected effects explain what is
-  bool decided =
-      false;  ///< explained, and nothing speaks against the answer being the only one: is_decided()
-  bool few_readings =
-      false;  ///< one more number would leave too few degrees of freedom: effects were not asked
+  /// explained, and nothing speaks against the answer being the only one: is_decided().
+  bool decided = false;
+  /// One more number would leave too few degrees of freedom: effects were not asked.
+  bool few_readings = false;
   bool one_condition = false;  ///< one position and one slack: channels cannot be told from each other
   double tolerance = 0.0;      ///< error below which nothing is called missing [N]
   double peak_force = 0.0;     ///< largest measured one [N]
@@ -58,12 +58,12 @@ struct Trace {
   std::optional<ZeroCheck> zero;      ///< beside a final model that has none
   std::string channel;  ///< of the first effect selected, or where the residual comes from; empty: unknown
   std::vector<ChannelFunction> functions;  ///< when the catalogue does not explain it
-  std::vector<ChannelFunction>
-      alternatives;  ///< when it does: causes outside it, in other channels, that would as well
+  /// When it does: causes outside it, in other channels, that would as well.
+  std::vector<ChannelFunction> alternatives;
   std::vector<CauseHypothesis> hypotheses;                ///< weighed, best first; none for published fits
   std::optional<std::pair<double, double>> heldout_rmse;  ///< base, final [N]
-  std::optional<std::pair<double, double>>
-      left_out_rmse;  ///< likewise of every condition predicted from the others, to first order
+  /// Likewise of every condition predicted from the others, to first order.
+  std::optional<std::pair<double, double>> left_out_rmse;
   std::optional<NextExperiment> next;
   std::vector<std::pair<std::string, double>> seconds;  ///< where the time went
   bool interrupted = false;
@@ -72,8 +72,8 @@ struct Trace {
 
 /// How far a tracing goes, at which levels, and who watches it.
 struct TraceOptions {
-  std::vector<std::string>
-      free;  ///< keys of the base model; empty: the experiment's own, else the two stiffnesses
+  /// Keys of the base model; empty: the experiment's own, else the two stiffnesses.
+  std::vector<std::string> free;
   int most_effects = 3;
   double significance = 0.02;  ///< of the first effect's score after Holm: one false alarm in fifty
   double further_significance =
@@ -90,8 +90,7 @@ struct TraceOptions {
 };
 
 /// Closes the loop of model and measurement: fits the declared model, tests what is left, finds the effect or
-/// the class
-/// of effects that the model lacks, adds it, one at a time.                           theory.md (I.1)-(I.7)
+/// the class of effects that the model lacks, adds it, one at a time.                   theory.md (I.1)-(I.7)
 /// Throws base::InputError for series that cannot be traced (no readings, fewer than the numbers to fit, all
 /// forces equal, never in contact).
 [[nodiscard]] Trace trace(const Experiment& experiment, const TraceOptions& options = {});

@@ -22,8 +22,7 @@ struct ZeroCheck {
 
 /// Asks for a zero of the travel beside a fit that has none. Where the touch is cannot be seen in a first
 /// reading: a force of nothing may be one of before it. The error that a wrong zero leaves may be far smaller
-/// than what is worth a name, since
-/// the stiffnesses take it up; they are then wrong.                                      theory.md (I.12)
+/// than what is worth a name, since the stiffnesses take it up; they are then wrong.         theory.md (I.12)
 /// None where the fit has a zero, of published fits, and where one number more would leave no degree of
 /// freedom.
 [[nodiscard]] std::optional<ZeroCheck> check_zero(const Model& model, const Data& data, const Fit& fit);

@@ -25,8 +25,8 @@ struct ArmDescription {
   std::filesystem::path file;
   std::string input;  ///< canonical text of everything that was read: equal for equal arms
   ElasticArm arm;
-  std::vector<RobotJoint>
-      joints;  ///< the moving joints: of the first elastic joints, behind which those of bending links come
+  /// The moving joints: of the first elastic joints, behind which those of bending links come.
+  std::vector<RobotJoint> joints;
   std::vector<Drive> drives;  ///< of all elastic joints, at rest, held where they are
   std::vector<ArmPose> poses;
   int tip = 0;                             ///< frame

@@ -128,7 +128,7 @@ class ElasticArmPart : public numerics::DaePart {
   /// The integration stays within this time until told again: what jumps at its ends has its inner value
   /// there. Times [s].
   void enter_interval(double begin, double end);
-  /// The first time behind a time that the integration must stop at, an end of a course or of a load;
+  /// The first time after a time that the integration must stop at, an end of a course or of a load;
   /// infinity where there is none.
   [[nodiscard]] double next_break(double time) const;
 

@@ -1,7 +1,6 @@
 // A tree on one free body, its momentum an unknown: the six rows of the base say P(q, v) - h = 0, and h' =
 // loads is integrated. The formulas of the integrator keep a constant exactly, so that the momentum errs by
-// what Newton's method
-// leaves in the base's rows and does not drift.                                            theory.md (A.16)
+// what Newton's method leaves in the base's rows and does not drift.                         theory.md (A.16)
 
 #include "multibody/arm/arm_part.hpp"
 

@@ -12,8 +12,7 @@
 namespace snare::multibody {
 
 /// Takes an arm from event to event: which modes are over, when its drives change, and how far nothing else
-/// jumps. Who
-/// integrates asks it after every step; alone and in a coupled run alike.                    theory.md (A.14)
+/// jumps. Who integrates asks it after every step; alone and in a coupled run alike.         theory.md (A.14)
 class ArmStepper {
  public:
   /// Part and switches stay the caller's and outlive the stepper.

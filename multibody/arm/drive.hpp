@@ -50,7 +50,7 @@ struct Drive {
   [[nodiscard]] bool rules() const { return mode == DriveMode::locked || mode == DriveMode::course; }
   /// Torque of the servo before its limit, or the given one [N m].
   [[nodiscard]] double demand(double time, double angle, double rate) const;
-  /// The first time behind a time at which the integration must stop [s]; infinity where there is none.
+  /// The first time after a time at which the integration must stop [s]; infinity where there is none.
   [[nodiscard]] double next_break(double time) const;
 };
 

@@ -83,7 +83,7 @@ class Faults : public CommandFixture {
       EXPECT_TRUE(call == "ftruncate" || said.find("No space left on device") != std::string::npos) << said;
       EXPECT_TRUE(call == "ftruncate" || !spared.empty()) << said;
     }
-    if (!kept.empty()) {  // the same command goes on from what it has
+    if (!kept.empty()) {  // the same command continues from what it has
       EXPECT_EQ(run(arguments + " --out failed"), 0) << contents("err.txt");
       for (const auto& [name, text] : files("failed")) {
         SCOPED_TRACE(name + " of the run that went on");

@@ -100,13 +100,13 @@ TEST_F(SweepCommand, GoesOnAfterAnInterruption) {
   EXPECT_EQ(cases("a"), cases("whole"));
 }
 
-// A case that ends the process costs itself, once: what is finished is kept, and the same command goes on
+// A case that ends the process costs itself, once: what is finished is kept, and the same command continues
 // with the others.
 TEST_F(SweepCommand, ACaseThatEndsTheProcessIsNotRunAgain) {
   const std::string many = " --threads 1 --set cases=600";
   ASSERT_EQ(run("sweep sweep.toml --out whole" + many), 0);
-  // A signal from outside may come between two cases, and is then no case's fault: the next try goes on from
-  // there.
+  // A signal from outside may come between two cases, and is then no case's fault: the next try continues
+  // from there.
   std::string said;
   for (int tries = 0; tries < 10 && said.find(" ended the process by SIGSEGV") == std::string::npos;
        ++tries) {
@@ -158,7 +158,7 @@ TEST_F(SweepCommand, TwoSweepsDoNotShareAFolder) {
 }
 
 // A limit of the file's size stands for a disk that is full: the journal ends with a whole line, and the
-// sweep goes on with room.
+// sweep continues with room.
 TEST_F(SweepCommand, AFullDiskKeepsWhatIsFinished) {
   ASSERT_EQ(run("sweep sweep.toml --out whole --set cases=300"), 0);
   EXPECT_EQ(

@@ -129,7 +129,7 @@ TEST_F(SweepHistories, AFullDiskKeepsWhatIsFinished) {
   EXPECT_FALSE(names("a/histories").empty());
   ASSERT_EQ(run("sweep sweep.toml --out a" + many), 0) << contents("err.txt");
   EXPECT_EQ(histories("a"), histories("whole"));
-  // A part that cannot be written, here for a file in the place of its folder.
+  // A part that cannot be written, here for a file instead of its folder.
   std::filesystem::create_directories(path("b"));
   write("b/histories", "in the way");
   EXPECT_EQ(run("sweep sweep.toml --out b"), 1);

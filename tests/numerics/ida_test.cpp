@@ -253,7 +253,7 @@ TEST(Ida, IntegralsAgreeWithWhatIsLinear) {
   EXPECT_LT(worst, 1e-8);                                 // Newton's method leaves 1e-9 at a step
   EXPECT_LT(within, 1e-8);
   EXPECT_NEAR(ida.integrals()[1], 1.5 + std::sin(12.0) / 8.0, 1e-2);
-  // A start goes on from where they are.
+  // A start continues from where they are.
   const Eigen::VectorXd so_far = ida.integrals();
   ida.start(ida.time(), ida.y(), ida.rate());
   EXPECT_EQ(ida.integrals(), so_far);

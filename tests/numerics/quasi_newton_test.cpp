@@ -39,7 +39,8 @@ MatrixXd five() {
 const VectorXd right = VectorXd::LinSpaced(5, 1.0, 3.0);
 const VectorXd weights = VectorXd::LinSpaced(5, 1.0, 100.0);
 
-// With A_0 = A + u v^T the error goes on along one direction: two corrections show how far, the third has it.
+// With A_0 = A + u v^T the error continues along one direction: two corrections show how far, the third has
+// it.
 TEST(QuasiNewton, ARankOfOneIsCorrectedAtOnce) {
   const MatrixXd A = five();
   const Equations F = [&](const VectorXd& x) { return VectorXd(A * x - right); };

@@ -11,7 +11,7 @@
 namespace snare::reduction {
 namespace {
 
-// The bound that a table states holds at random places, solved anew by the full wire; a coarse table and a
+// The bound that a table states holds at random places, solved again by the full wire; a coarse table and a
 // coarse mesh.
 TEST(TableBuilder, StatedBoundHoldsAtRandomPoints) {
   const WireFile file = small_wire();
@@ -37,7 +37,7 @@ TEST(TableBuilder, StatedBoundHoldsAtRandomPoints) {
   }
 }
 
-// The default table of the fitted wire against the full wire solved anew at 1000 places, each from the
+// The default table of the fitted wire against the full wire solved again at 1000 places, each from the
 // straight wire: 0.5 % of the range of the force, and never beyond the bound that the table states.
 TEST(SlowTable, AThousandRandomPoints) {
   WireFile file = small_wire("[ranges]\ntravel_mm = 4.0\n");

@@ -29,8 +29,8 @@ namespace {
 using multibody::Drive;
 using multibody::DriveMode;
 
-/// A joint's gear, written down anew (A.9) to (A.11): a spring of two slopes with a damper, friction that
-/// does not stick, a drive.
+/// A joint's gear, written down independently (A.9) to (A.11): a spring of two slopes with a damper, friction
+/// that does not stick, a drive.
 struct Gear {
   int velocity = 0, coordinate = 0;  ///< of the joint in the tree
   double first = 0.0, second = 0.0, bend = 0.0, damping = 0.0;

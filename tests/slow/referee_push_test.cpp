@@ -254,7 +254,7 @@ TEST(SlowReferees, RandomPushesAgreeWithTheElastica) {
     RecordProperty(fmt::format("points at {} edges", edges), count.points);
     RecordProperty(fmt::format("beyond the stated error at {} edges", edges), count.beyond);
   }
-  // A solver may stop, and says so; seldom.
+  // A solver may stop, and says so; rarely.
   EXPECT_LE(sum.unfinished, std::max(1, (problems.end - problems.first) / 200)) << sum.unfinished_text;
   EXPECT_GE(points, 3 * (problems.end - problems.first) / 2);  // of some five a problem
   if (HasFailure()) ADD_FAILURE() << "worst of " << points << " points: " << sum.worst_text;

@@ -116,7 +116,7 @@ TEST_F(JournalTest, RefusesWhatIsNoFile) {
               testing::HasSubstr("must be a regular file"));
 }
 
-// Whatever the length to which a kill leaves the file, the whole lines count and the journal goes on.
+// Whatever the length to which a kill leaves the file, the whole lines count and the journal continues.
 TEST_F(JournalTest, AnyTornEndIsTakenOut) {
   {
     Journal journal(file(), "s", 3);

@@ -18,8 +18,8 @@ namespace {
 
 using std::numbers::pi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kForceError =
-    1e-9;  // relative, of the force: what elastica_push.hpp claims, set by rounding
+// relative, of the force: what elastica_push.hpp claims, set by rounding
+constexpr double kForceError = 1e-9;
 constexpr double kLengthRounding = 1e-14;  // [m]: some hundred roundings of lengths of 0.1 m
 
 // Solid SUS-304, d 1.5 mm, E 193 GPa, 180 mm between clamps 175 mm apart.

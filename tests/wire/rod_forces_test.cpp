@@ -240,7 +240,8 @@ INSTANTIATE_TEST_SUITE_P(Plain, RodForcesOfPlain, testing::ValuesIn(crooked(Form
 INSTANTIATE_TEST_SUITE_P(Plain, RodForcesOf, testing::ValuesIn(crooked(Formulation::vertices)));
 INSTANTIATE_TEST_SUITE_P(OfHigherOrder, RodForcesOf, testing::ValuesIn(crooked(Formulation::higher_order)));
 
-// Where no four vertices are left, what stands for the others goes on as the wire does: no turn from x to -x.
+// Where no four vertices are left, what stands for the others continues as the wire does: no turn from x to
+// -x.
 TEST(RodForces, AreNoneOfAStraightWireWhereverItPoints) {
   for (const Formulation formulation : {Formulation::vertices, Formulation::higher_order}) {
     for (int elements = 4; elements <= 8; ++elements) {

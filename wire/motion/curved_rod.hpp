@@ -11,8 +11,7 @@
 #include <vector>
 
 /// Bending and stretching of the rod of higher order: the curvatures k_1, k_2 of every vertex that bends are
-/// algebraic
-/// unknowns, every edge is a beam.                                                   theory.md (W.31), (W.33)
+/// algebraic unknowns, every edge is a beam.                                         theory.md (W.31), (W.33)
 ///
 ///   E = sum_vertices [ sum_j w_j phi_j - |w|^2/(2 k_mount) ]
 ///       + sum_edges [ E_e(l, k_i, k_{i+1}) + h/2 sum_j EI_j n_j^2 ]

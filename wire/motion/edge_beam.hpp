@@ -12,8 +12,7 @@
 namespace snare::wire {
 
 /// An edge of the rod of higher order: a beam between two vertices, whose curvatures EI k at its ends and
-/// whose
-/// tension bend it off its chord.                                                            theory.md (W.32)
+/// whose tension bend it off its chord.                                                      theory.md (W.32)
 struct EdgeBeamConstants {
   double rest = 0.0;                                            ///< unstretched length h [m], > 0
   double axial_stiffness = 0.0;                                 ///< EA [N], > 0

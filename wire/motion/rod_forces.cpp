@@ -55,7 +55,7 @@ RodForces::RodForces(const RodModel& model, bool four) : four_(four), rows_(RodR
 
 void RodForces::restrict_to_plane(const std::optional<RodPlane>& plane) {
   plane_ = plane;
-  // Nothing is worked out across the plane.
+  // Nothing is computed across the plane.
   rows_.clear(Row::force, 3);
 }
 
@@ -81,7 +81,7 @@ void RodForces::take_unknowns(const RodModel& model, const DaePoint& at) {
       places[i] = x[3 * i + k];
       velocities[i] = v[3 * i + k];
     }
-    // What stands for no vertex goes on as the last edge does.
+    // What stands for no vertex continues as the last edge does.
     for (int i = n + 1; i < rows_.length(); ++i) places[i] = places[i - 1] + (places[n] - places[n - 1]);
   }
   std::copy_n(at.y.data() + model.angle_of(0), n, rows_.row(Row::theta));

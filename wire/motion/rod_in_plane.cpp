@@ -26,8 +26,8 @@ using stiffness::entry_of_two;
 using Row = RodRow;
 
 /// How four vertices between the ends of a rod in a plane turn, from i on, as its rows have them, and what
-/// they do to the edges: with the
-/// tangent t = (t_u, t_v) the angle of an edge changes by (-t_v, t_u)/length.          theory.md (W.2), (W.3)
+/// they do to the edges: with the tangent t = (t_u, t_v) the angle of an edge changes by (-t_v, t_u)/length.
+///                                                                                     theory.md (W.2), (W.3)
 struct PlaneTurn {
   Lanes before_u, before_v, after_u, after_v;  ///< tangents
   Lanes inverse_a, inverse_b;                  ///< of the edges' lengths [1/m]

@@ -9,8 +9,7 @@
 namespace snare::wire {
 
 /// What RodForces and RodStiffness work out on edges and on vertices between the ends, of a rod that stays in
-/// a plane: of the two
-/// components there, four edges and then four vertices at a time.                            theory.md (M.36)
+/// a plane: of the two components there, four edges and then four vertices at a time.        theory.md (M.36)
 ///
 /// four: see RodForces. All in SI units. The forces go to the rows of edges, with energy, losses and what
 /// curvatures have; the rows hold the unknowns already.

@@ -56,8 +56,7 @@ class RodModel {
   [[nodiscard]] double rest_length(int edge) const { return rod_.mesh().rest_length(edge, controls_); }
   [[nodiscard]] double mass_of(int vertex) const { return mass_[base::at(vertex)]; }
   /// Of the masses what resists acceleration: all, or of a quasi-static wire so little that no wave is felt,
-  /// and what friction
-  /// lets go still passes from one place to the next.                                        theory.md (M.18)
+  /// and what friction lets go still passes from one place to the next.                      theory.md (M.18)
   /// 1, or 1e-3 where it is quasi-static [-]; the mass that resists acceleration then [kg].
   [[nodiscard]] double inertial_share() const { return constants_.quasi_static ? 1e-3 : 1.0; }
   [[nodiscard]] double inertia_of(int vertex) const { return inertial_share() * mass_of(vertex); }
@@ -68,7 +67,7 @@ class RodModel {
 
   /// Whether component k of a vertex is rigidly held by a mount that stands still.
   [[nodiscard]] bool is_held(int vertex, int k) const { return held_[base::at(3 * vertex + k)]; }
-  /// Whether theta = 0 stands in the place of its balance: of no edge, or with nothing that determines it.
+  /// Whether theta = 0 stands instead of its balance: of no edge, or with nothing that determines it.
   [[nodiscard]] bool holds_angle(int vertex) const {
     return vertex == vertices() - 1 || (holds_first_angle_ && vertex == 0);
   }
@@ -96,7 +95,7 @@ class RodModel {
   [[nodiscard]] int rate_of(int band) const { return velocity_of(band / block) + band % block; }
   /// Row of the balance of forces on a coordinate, or of moments on an angle.
   [[nodiscard]] int balance_of(int band) const { return is_angle(band) ? unknown_of(band) : rate_of(band); }
-  /// Whether x = X or theta = 0 is there in the place of the balance.
+  /// Whether x = X or theta = 0 is there instead of the balance.
   [[nodiscard]] bool is_held(int band) const {
     return is_angle(band) ? holds_angle(band / block) : is_held(band / block, band % block);
   }

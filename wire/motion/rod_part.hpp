@@ -65,7 +65,7 @@ class RodPart final : public numerics::DaePart {
   /// Works out from here on only what happens in a plane, in which it has to be. Returns the unknowns that
   /// leave the plane, or turn out of it, which have to be held.
   [[nodiscard]] std::vector<int> restrict_to_plane(const RodPlane& plane);
-  /// What happens in space is worked out again.
+  /// What happens in space is computed again.
   void leave_plane();
 
   /// Before `declare`: the mount of one end moves, as it does at unknowns y (SI units). The vertex there is

@@ -282,7 +282,7 @@ void RodStiffness::work_by_two(const RodModel& model, const Point& point) {
 
 namespace {
 
-/// Which components of places, and which of curvatures, are worked out, and whether edges turn about
+/// Which components of places, and which of curvatures, are computed, and whether edges turn about
 /// themselves.
 struct InSpace {
   static constexpr std::array<int, 3> axes{0, 1, 2};

@@ -24,8 +24,7 @@ struct StrandResponse {
 };
 
 /// What the strands of vertex i answer to rates of its curvatures kappa_j [1/s], as a moment [N m]; what they
-/// hold and lose is added. length: of its
-/// cell [m].                                                                                 theory.md (M.14)
+/// hold and lose is added. length: of its cell [m].                                          theory.md (M.14)
 [[nodiscard]] Eigen::Vector2d strand_moment(const RodModel& model, int i, double length,
                                             const Eigen::Vector2d& rates, const numerics::DaePoint& at,
                                             RodLosses& losses);

@@ -10,8 +10,8 @@
 namespace snare::coupling {
 
 /// The C1 curve of a wire (M.6), element by element as cubics in Bernstein form: each stays in the convex
-/// hull of its
-/// four control points, and so does every derivative by time in the hull of theirs.          theory.md (G.6)
+/// hull of its four control points, and so does every derivative by time in the hull of theirs.
+///                                                                                            theory.md (G.6)
 class BezierWire {
  public:
   using Control = Eigen::Matrix<double, 3, 4>;

@@ -144,12 +144,10 @@ void ContactGroup::take_from_mounts(const VectorView& y, std::vector<Eigen::Vect
 Interaction::Observed ContactGroup::observe(const numerics::DaePoint& now, double time_before,
                                             const Eigen::VectorXd& before) {
   const ContactSample sum = closed_sample(now.y);
-  Observed seen{
-      .normal = sum.normal_force,
-      .events = touches_.observe(sum, {now.time, now.y}, {time_before, before},
-                                 [this](const VectorView& y, double arc) { return gap_at(y, arc); })};
-  if (is_law()) return seen;
-  for (const ContactSample& s : sum.points) seen.penetration = std::max(seen.penetration, -s.gap);
+  Observed seen =
+      observed(sum, touches_.observe(sum, {now.time, now.y}, {time_before, before},
+                                     [this](const VectorView& y, double arc) { return gap_at(y, arc); }));
+  if (is_law()) seen.penetration = 0.0;
   return seen;
 }
 

@@ -121,7 +121,7 @@ class ContactIntervals {
     return chord * a.slope <= 0.0 || std::hypot(a.slope, b.slope) > 3.0 * std::abs(chord);
   }
 
-  /// A closed piece, which goes on with the stretch before it or begins another.
+  /// A closed piece, which continues with the stretch before it or begins another.
   template <class Gap>
   void add(const Gap& gap, const GapPlace& a, const GapPlace& b, const ContactCache& found) const {
     if (waves(a, b)) {

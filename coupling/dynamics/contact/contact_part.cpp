@@ -24,7 +24,7 @@ namespace {
 //                                                                                             theory.md (G.9)
 constexpr double least_curvature = 1.0;
 
-// Beside what may be touched next, so that the pattern seldom changes.
+// Beside what may be touched next, so that the pattern rarely changes.
 constexpr int coupled_beside = 2;
 
 }  // namespace
@@ -518,7 +518,7 @@ std::vector<ContactSample> ContactPart::samples(const VectorView& y) const {
   std::vector<ContactSample> list;
   const ContactCache& found = found_at(y);
   const BezierWire& curve = search_.curve();
-  // One after another along the wire; a stretch that goes on in the next element is one with it.
+  // One after another along the wire; a stretch that continues in the next element is one with it.
   double reached = -1.0;
   std::vector<std::size_t> of_stretch;
   for (std::size_t k = 0; k < found.stretches.size(); ++k) {

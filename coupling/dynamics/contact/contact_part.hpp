@@ -62,7 +62,7 @@ class ContactPart final : public numerics::DaePart {
   /// which wire and body stay. Returns the unknowns that leave it, the bristles' deflections across the wire:
   /// see RodPart.
   [[nodiscard]] std::vector<int> restrict_to_plane(int normal);
-  /// What happens in space is worked out again.
+  /// What happens in space is computed again.
   void leave_plane() { normal_.reset(); }
 
   /// What the contact does in all, for balances.

@@ -40,8 +40,7 @@ class CubicPieces {
   std::vector<BezierWire::Control> controls_;
 };
 /// Whether an element of one wire and a run of elements of another are further apart than a distance [m], as
-/// a plane between them shows
-/// whose normal is perpendicular to both; false says nothing.                                theory.md (G.13)
+/// a plane between them shows whose normal is perpendicular to both; false says nothing.     theory.md (G.13)
 [[nodiscard]] bool parted(const CubicPieces& own, int element, const CubicPieces& other, int first, int last,
                           double distance);
 
@@ -49,8 +48,8 @@ class CubicPieces {
 struct FootPoint {
   int element = 0;
   double u = 0.0;  ///< along the element, from 0 to 1 [-]
-  bool stands =
-      false;  ///< an end of the wire or of the elements that were looked through: (X - p).X' is not zero
+  /// An end of the wire or of the elements that were looked through: (X - p).X' is not zero.
+  bool stands = false;
 };
 /// The local minimum of the distance to p [m] that is downhill of the nearest of the vertices of elements
 /// first ... last.

@@ -23,11 +23,12 @@ class UnilateralForcePart : public FrameForces, public Interaction {
   [[nodiscard]] virtual double touches(const numerics::VectorView& y) const { return depth(y); }
   /// What can be said of it at one place, from y in SI units.
   struct Pressing {
-    ContactSample
-        sample;  ///< but for the gap; its force is that on the first of those that press on each other
+    /// But for the gap; its force is that on the first of those that press on each other.
+    ContactSample sample;
     Work work;
     double tension = 0.0;  ///< of a wire [N]
   };
+  /// At unknowns y in SI units.
   [[nodiscard]] virtual Pressing pressing(const numerics::VectorView& y) const = 0;
   [[nodiscard]] Work work(const numerics::VectorView& y) const final { return pressing(y).work; }
 

@@ -188,12 +188,8 @@ void WirePairPart::take_from_mounts(const VectorView& y, std::vector<Vector3d>& 
 Interaction::Observed WirePairPart::observe(const numerics::DaePoint& now, double time_before,
                                             const Eigen::VectorXd& before) {
   const ContactSample sum = closed_sample(now.y);
-  Observed seen{
-      .normal = sum.normal_force,
-      .events = touches_.observe(sum, {now.time, now.y}, {time_before, before},
-                                 [this](const VectorView& y, double arc) { return gap_at(y, arc); })};
-  for (const ContactSample& s : sum.points) seen.penetration = std::max(seen.penetration, -s.gap);
-  return seen;
+  return observed(sum, touches_.observe(sum, {now.time, now.y}, {time_before, before},
+                                        [this](const VectorView& y, double arc) { return gap_at(y, arc); }));
 }
 
 }  // namespace snare::coupling

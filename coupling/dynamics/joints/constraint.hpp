@@ -65,8 +65,7 @@ class Constraint : public numerics::DaePart {
 };
 
 /// Adds to dv what the constraints' forces do, so that G dv + extra = 0 for all of them; returns their
-/// multipliers, one
-/// constraint behind another. extra: empty for zero.                                         theory.md (M.16)
+/// multipliers, one constraint behind another. extra: empty for zero.                        theory.md (M.16)
 /// All in SI units.
 Eigen::VectorXd project(const std::vector<const Constraint*>& constraints, const numerics::VectorView& y,
                         const Eigen::VectorXd& extra, Eigen::VectorXd& dv);

@@ -56,10 +56,10 @@ class ConstraintSet {
   /// Time up to which nothing of the arms jumps but by an event [s].
   [[nodiscard]] double limit() const { return limit_; }
   /// After a step: leaves the modes that are over, and changes drives at their times. found: IDA's events of
-  /// the arms, empty when it found none. True: the integration must start anew.
+  /// the arms, empty when it found none. True: the integration must be restarted.
   [[nodiscard]] bool process_events(const numerics::DaePoint& at, std::span<const int> found,
                                     Eigen::VectorXd& y);
-  /// A new drive of a joint from a time on. The integration must start anew.
+  /// A new drive of a joint from a time on. The integration must be restarted.
   void change_drive(int arm, int joint, const multibody::Drive& drive, double time, Eigen::VectorXd& y);
   /// The same where the unknowns have taken it in already: behind it `restore_state` must follow.
   void restore_drive(int arm, int joint, const multibody::Drive& drive);

@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 using multibody::Wrench;
 using numerics::DaePoint;
 
-// The stretch of the times in which the integration is: that behind the last time at which it began anew, so
-// that a step up to a jump sees the near side of it.
+// The stretch of the times in which the integration is: that after the last time at which it started again,
+// so that a step up to a jump sees the near side of it.
 Wrench LoadPart::wrench(const DaePoint& at) const {
   const std::vector<double>& t = load_.times;
   const auto behind = std::upper_bound(t.begin(), t.end(), entered_);

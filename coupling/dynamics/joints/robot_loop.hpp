@@ -15,7 +15,7 @@ namespace snare::coupling {
 ///
 /// Impulse and force at the integrator's steps and at quarters of them, between these the cubic that has both
 /// at both ends; no step is longer than the delay, so that what a step asks for has always been measured.
-/// What begins anew in the motion, or touches, does so again in the course a delay later.
+/// What starts again in the motion, or touches, does so again in the course a delay later.
 class RobotLoop {
  public:
   /// The body stays the caller's and outlives it.
@@ -33,10 +33,10 @@ class RobotLoop {
   /// the step.
   void sense_forces(double from, double to, const Force& force);
   [[nodiscard]] const MotionRobot& robot() const { return *body_.robot; }
-  /// The integration has come to a time [s]; anew: it begins anew there. Whether it must, as it did a delay
+  /// The integration has come to a time [s]; anew: it starts again there. Whether it must, as it did a delay
   /// earlier.
   [[nodiscard]] bool begin_interval(double time, bool anew);
-  /// The first time behind a time at which it must [s]; infinite: none.
+  /// The first time after a time at which it must [s]; infinite: none.
   [[nodiscard]] double next_break(double time) const;
   [[nodiscard]] double longest_step() const { return body_.robot->delay; }
 
@@ -63,7 +63,7 @@ class RobotLoop {
 
   const MotionBody& body_;
   std::deque<Record> records_;
-  std::deque<double> breaks_;  // times at which the integration began anew, a delay later
+  std::deque<double> breaks_;  // times at which the integration started again, a delay later
 };
 
 }  // namespace snare::coupling

@@ -70,7 +70,7 @@ struct PlaneCrossing {
 /// A tangent from a mount, at a distance from the axis, to the shaft: t = sqrt(rho^2 - r^2), acos(r/rho), and
 /// t - r acos(r/rho), whose slope is t/rho; it meets the shaft at r^2/rho along the way to the mount. A mount
 /// into which the shaft is pressed, rho <= r, has none of
-/// them: the string goes on along the surface, and pulls at the mount itself.
+/// them: the string continues along the surface, and pulls at the mount itself.
 template <class S>
 struct Tangent {
   S length{}, over_the_arc{}, foot;

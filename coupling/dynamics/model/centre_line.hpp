@@ -17,14 +17,12 @@ struct LinePoints {
 };
 
 /// More points on the curve that a spline over the lengths of their chords draws through points, with how far
-/// they lie along it. What the
-/// points have as coordinates is not looked at.                                              theory.md (M.37)
+/// they lie along it. What the points have as coordinates is not looked at.                  theory.md (M.37)
 /// Throws std::domain_error where points lie too close for roundings.
 [[nodiscard]] LinePoints measured_points(const LinePoints& points);
 
 /// The line on which a wire begins a motion: cubic splines of its places and velocities over the material
-/// coordinate S, as a
-/// lath would lie through the points.                                                        theory.md (M.37)
+/// coordinate S, as a lath would lie through the points.                                     theory.md (M.37)
 class CentreLine {
  public:
   /// Throws std::domain_error where coordinates lie too close for roundings.

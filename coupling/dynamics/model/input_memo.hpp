@@ -10,7 +10,7 @@
 namespace snare::coupling {
 
 /// The unknowns on which a part depends, as they were when it was evaluated last: what is asked for at the
-/// same place again and again is worked out once.
+/// same place again and again is computed once.
 class InputMemo {
  public:
   /// The part depends on `count` unknowns from `first` on.

@@ -64,8 +64,8 @@ struct LawWire {
   double axial_stiffness = 0.0;                      ///< EA [N]; stretched: > 0
   double axial_time = 0.0;                           ///< stretched: T = EA (e + tau e')/L [s], >= 0
   ContactLaw law;                                    ///< rod: F(x, x')
-  double standoff =
-      0.0;  ///< rod: by which the wire that the law means stands off the rod [m], >= 0, for its tension
+  /// rod: by which the wire that the law means stands off the rod [m], >= 0, for its tension.
+  double standoff = 0.0;
   WirePushLaw push;         ///< of a push
   bool push_jumps = false;  ///< whether its force jumps where they touch
   /// Whether a push was made for a travel and a position along the chord [m]; none: for all.

@@ -17,8 +17,7 @@ struct LeftOutInertia {
 };
 
 /// Follows the momentum p = sum m v that a quasi-static wire would have, and bounds by its mean rate of
-/// change the force that
-/// is missing at contacts and mounts.                                                        theory.md (M.18)
+/// change the force that is missing at contacts and mounts.                                  theory.md (M.18)
 class LeftOutMomentum {
  public:
   /// window [s], >= 0: shorter steps are taken together.

@@ -35,8 +35,8 @@ struct MotionWire {
   std::string name = "wire";
   wire::RodInMotion rod;       ///< constants, mounts, damping and mesh
   Eigen::Matrix3Xd positions;  ///< of the vertices at the start [m]: see straight_wire, resting_wire
-  Eigen::Matrix3Xd
-      velocities;  ///< [m/s]; empty: with its carriers (CarriedWire), at rest between mounts in the world
+  /// [m/s]; empty: with its carriers (CarriedWire), at rest between mounts in the world.
+  Eigen::Matrix3Xd velocities;
   WireStrength strength = {};
   WireTightness tightness = {};
 };
@@ -115,8 +115,8 @@ struct Motion {
   std::vector<WirePair> wire_pairs;
   std::vector<MotionArm> arms;
   std::vector<MotionWeld> welds;  ///< bodies on arms, on other bodies, on the world
-  std::vector<MotionMount>
-      mounts;  ///< ends of wires on arms or bodies, and those that give; the others stand still
+  /// Ends of wires on arms or bodies, and those that give; the others stand still.
+  std::vector<MotionMount> mounts;
   std::vector<MotionBushing> bushings;
   std::vector<LawWire> law_wires;  ///< behind the other wires where wires are counted
   std::vector<BodyContact> body_contacts;

@@ -29,8 +29,7 @@ struct MotionMode {
   std::vector<std::pair<std::string, double>> shares;
   ModeShape shape;
   /// Estimated error of the frequency due to the mesh of the wires, from a coarser one [Hz]; none: not
-  /// estimated, or the coarser
-  /// mesh has no such mode.                                                                  theory.md (M.31)
+  /// estimated, or the coarser mesh has no such mode.                                        theory.md (M.31)
   std::optional<double> mesh_error;
 
   /// Whether the mesh resolves the frequency to within a hundredth.

@@ -30,16 +30,15 @@ struct MotionOptions {
   double max_step = std::numeric_limits<double>::infinity();  ///< [s]; no touch is missed without one
   /// Of the mean that is reported as peak force [s], >= 0; 1e-4 is an instrument of 10 kHz.  theory.md (M.10)
   double peak_window = 1e-4;
-  /// At every multiple of this the integration begins anew at first order from what a MotionState holds, so
+  /// At every multiple of this the integration starts again at first order from what a MotionState holds, so
   /// that going on from there gives the same bits as having gone through [s], > 0.
   double checkpoint_interval = std::numeric_limits<double>::infinity();
   /// Simulated time that a window of evaluations must bring [s], >= 0: a run of which it brings less has
-  /// stalled and is given up, after
-  /// half a minute or so of a core; see numerics::Progress.                                  theory.md (M.30)
+  /// stalled and is given up, after half a minute or so of a core; see numerics::Progress.   theory.md (M.30)
   double least_advance = 0.0;
   bool wire_loads = false;  ///< samples have the velocities and section loads of the wires, see WireLoads
-  std::function<bool()>
-      stop;  ///< asked after every step; true: stop. The observer is asked at output times only
+  /// Asked after every step; true: stop. The observer is asked at output times only.
+  std::function<bool()> stop;
 };
 
 }  // namespace snare::coupling

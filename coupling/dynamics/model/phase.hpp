@@ -46,8 +46,7 @@ struct PhaseDrive {
 };
 
 /// A stretch of time that begins at a time or on what happens, and changes drives. Phases begin one after the
-/// other, in their
-/// order; several may begin at once.                                                         theory.md (M.23)
+/// other, in their order; several may begin at once.                                         theory.md (M.23)
 struct MotionPhase {
   std::string name = "phase";
   double not_before = 0.0;          ///< [s], from the start of the motion

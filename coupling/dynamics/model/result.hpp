@@ -60,8 +60,8 @@ struct MotionSample {
   std::vector<multibody::RigidBodyState> bodies;
   /// As Motion::contact_names counts them; of springs, pairs and contacts of bodies on the first of each.
   std::vector<ContactSample> contacts;
-  std::vector<Eigen::Matrix3Xd>
-      wires;  ///< positions of the vertices, then of the wires that laws stand for [m]
+  /// Positions of the vertices, then of the wires that laws stand for [m].
+  std::vector<Eigen::Matrix3Xd> wires;
   std::vector<Eigen::Vector3d> mount_forces;  ///< on the wire: left, right of each wire [N]
   std::vector<WireLoads> wire_loads;  ///< of the wires that are rods; empty without MotionOptions::wire_loads
   std::vector<double> law_tensions;   ///< of the wires that laws stand for [N]
@@ -72,8 +72,8 @@ struct MotionSample {
     Eigen::VectorXd drive_torque;  ///< of the drives on the motors [N m]
   };
   std::vector<Arm> arms;
-  std::vector<multibody::Wrench>
-      welds;  ///< on the held bodies, about their centres of mass, axes of the world
+  /// On the held bodies, about their centres of mass, axes of the world.
+  std::vector<multibody::Wrench> welds;
   struct Bushing {
     Eigen::Vector3d shift = Eigen::Vector3d::Zero(),
                     turn = Eigen::Vector3d::Zero();  ///< [m], [rad], axes of the first
@@ -138,8 +138,8 @@ struct MotionState {
   Eigen::VectorXd unknowns;
   Eigen::VectorXd rates;
   Eigen::VectorXd integrals;  ///< powers, reactions and contact forces over time
-  std::vector<double>
-      memory;  ///< of the parts beside their unknowns: frames of the wires, states of the contacts
+  /// Of the parts beside their unknowns: frames of the wires, states of the contacts.
+  std::vector<double> memory;
   MotionSums sums;
 };
 

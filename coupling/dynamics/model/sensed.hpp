@@ -13,8 +13,7 @@ struct MotionSample;
 /// rate, late and with noise.
 ///
 /// Reading i comes at i times the interval and tells what was there a delay earlier (at the start where that
-/// is before it): the sample of
-/// the output time there, between two output times straight.                                 theory.md (M.23)
+/// is before it): the sample of the output time there, between two output times straight.    theory.md (M.23)
 struct SensedSignal {
   using Sight = std::function<Eigen::Vector3d(const MotionSample& sample)>;
   std::function<Sight(const Motion& motion)> make;  ///< what it sees, in the unit of its readings

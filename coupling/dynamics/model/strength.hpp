@@ -16,8 +16,8 @@ namespace snare::coupling {
 /// What a wire bears.                                                                        theory.md (W.34)
 struct WireStrength {
   double breaking_tension = std::numeric_limits<double>::infinity();  ///< of the straight wire [N], > 0
-  double bending_force =
-      0.0;  ///< tension that strains it as much as a curvature of one does [N m], >= 0; 0: not counted
+  /// Tension that strains it as much as a curvature of one does [N m], >= 0; 0: not counted.
+  double bending_force = 0.0;
   bool ends_run = false;  ///< the run ends where it is reached
 };
 

@@ -18,9 +18,9 @@ struct WireUse {
   double peak_tension = 0.0;   ///< [N], at accepted steps
   double peak_time = 0.0;      ///< [s]
   double tight_since = never;  ///< tight from then on, until now [s]
-  double tight_at =
-      never;  ///< when it was tight for the first time for as long as asked: the beginning of that [s]
-  double last_tension = 0.0, last_time = 0.0;
+  /// When it was tight for the first time for as long as asked: the beginning of that [s].
+  double tight_at = never;
+  double last_tension = 0.0, last_time = 0.0;  // [N], [s]
 
   /// At an accepted step, time [s] and tension [N]: straight between two steps.
   void add(const WireTightness& asked, double time, double tension) {

@@ -5,8 +5,8 @@
 namespace snare::coupling {
 
 /// Integral of a power that is never negative and has kinks, over accepted steps, by Simpson's rule: its
-/// weights are positive, so that the
-/// sum never falls, and a kink costs it no more than the step in which it lies.              theory.md (M.11)
+/// weights are positive, so that the sum never falls, and a kink costs it no more than the step in which it
+/// lies.                                                                                     theory.md (M.11)
 class LossSum {
  public:
   /// sum: up to the start [J].

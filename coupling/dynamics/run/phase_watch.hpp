@@ -12,8 +12,8 @@
 namespace snare::coupling {
 
 /// When the phases of a motion begin. Signals are looked at where the integrator has stepped, and taken as
-/// straight between: the
-/// unknowns between two steps err by more than a stiff contact forgives.                     theory.md (M.23)
+/// straight between: the unknowns between two steps err by more than a stiff contact forgives.
+///                                                                                           theory.md (M.23)
 class PhaseWatch {
  public:
   /// A signal's present value, in the SI unit of its kind.

@@ -18,8 +18,7 @@ struct RoundWall {
 };
 
 /// A wire between pins at rest against a wall that it would bow beyond, in its plane: (3, vertices) [m]. Of a
-/// wire that clears the wall it is
-/// resting_wire. wire_radius [m], > 0.                                                       theory.md (M.33)
+/// wire that clears the wall it is resting_wire. wire_radius [m], > 0.                       theory.md (M.33)
 ///
 /// The wire begins as the arc of its length between its mounts and follows what bends it and what presses on
 /// it, damped and without inertia, until it rests. Throws base::InputError where that arc does not fit into

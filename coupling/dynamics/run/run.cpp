@@ -329,6 +329,20 @@ MotionRun::Crossed MotionRun::cross_events(double time_before, std::span<const i
   return crossed;
 }
 
+void MotionRun::end(numerics::IdaReport& report, bool stopped) const {
+  if (broken_) {
+    report.termination = numerics::Termination::iteration_limit;
+    report.message = *broken_;
+  }
+  if (not_finite_) {
+    report.termination = numerics::Termination::not_finite;
+    report.message = fmt::format("a result is not finite at {:.9g} s", time_);
+  } else if (stopped && report.usable()) {
+    report.termination = numerics::Termination::interrupted;
+    report.message = fmt::format("stopped on request at {:.9g} s", time_);
+  }
+}
+
 MotionResult MotionRun::run_until(double limit) {
   const auto clock = std::chrono::steady_clock::now();
   numerics::IdaReport report;
@@ -395,17 +409,7 @@ MotionResult MotionRun::run_until(double limit) {
       restart();
     }
   }
-  if (broken_) {
-    report.termination = numerics::Termination::iteration_limit;
-    report.message = *broken_;
-  }
-  if (not_finite_) {
-    report.termination = numerics::Termination::not_finite;
-    report.message = fmt::format("a result is not finite at {:.9g} s", time_);
-  } else if (stopped && report.usable()) {
-    report.termination = numerics::Termination::interrupted;
-    report.message = fmt::format("stopped on request at {:.9g} s", time_);
-  }
+  end(report, stopped);
   report.time = time_;
   sums_.statistics += ida_->statistics();
   sums_.wall_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();

@@ -65,10 +65,12 @@ class MotionRun {
   void stay_in_plane();
   void leave_plane();
   [[nodiscard]] bool write_until(double time);
-  /// Gives a sample to the observer; true: the run ends. One with a number that is none is not given and ends
-  /// the run; the first one throws base::InputError.
+  /// Gives a sample to the observer; true: the run ends. One with a value that is not a number is not given
+  /// and ends the run; the first one throws base::InputError.
   [[nodiscard]] bool emit(const MotionSample& sample);
   void cross_break(double time);
+  /// Why the run has ended here, where the integrator does not say so.
+  void end(numerics::IdaReport& report, bool stopped) const;
   [[nodiscard]] MotionResult result(numerics::IdaReport report);
 
   // Starts (start_rates.cpp).

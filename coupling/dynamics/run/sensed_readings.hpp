@@ -24,7 +24,7 @@ class SensedReadings {
 
   /// Whether nothing is sensed.
   [[nodiscard]] bool empty() const { return signals_.empty(); }
-  /// The first time behind a time at which something is seen or read, at which the integration must stop [s];
+  /// The first time after a time at which something is seen or read, at which the integration must stop [s];
   /// infinite: none.
   [[nodiscard]] double limit(double time) const;
   /// The integration stands at a time [s]: what is seen or read there.

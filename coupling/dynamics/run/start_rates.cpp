@@ -9,8 +9,7 @@ namespace snare::coupling {
 using Eigen::VectorXd;
 
 // With all accelerations and constraint forces zero the rows are minus the forces; what the constraints then
-// miss gives
-// their forces.                                                              theory.md (M.10)
+// miss gives their forces.                                                                   theory.md (M.10)
 // Angles of edges have no inertia: their rates are continuous, as are the velocities that determine them.
 void MotionRun::make_rates() {
   const VectorXd before = std::exchange(rate_, VectorXd::Zero(y_.size()));

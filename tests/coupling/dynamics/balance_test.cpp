@@ -83,8 +83,8 @@ TEST(MotionBalance, ADrivenBodyIsAccountedFor) {
   motion.bodies[0].driven = true;
   motion.contacts[0].friction = {};
   MotionOptions options = test::fine_tolerances();
-  options.newton_share =
-      1e-8;  // what Newton's method leaves, times the stiffness of the contact, is missing from its force
+  // what Newton's method leaves, times the stiffness of the contact, is missing from its force
+  options.newton_share = 1e-8;
   options.duration = 0.03;
   const MotionResult result = simulate(motion, options);
   ASSERT_TRUE(result.report.usable()) << result.report.message;

@@ -104,7 +104,7 @@ TEST(ContactIntervals, WhatIsNoNumberEndsTheSearch) {
 }
 
 // Dips side by side with a maximum between them, here above zero, that passes the beginning of the element:
-// what is closed there goes on from state to state though the slope at the beginning changes its sign.
+// what is closed there continues from state to state though the slope at the beginning changes its sign.
 TEST(ContactIntervals, NoStepWhereAMaximumPassesAVertex) {
   constexpr double wave = 0.06, height = 2e-7, rise = 1e-4;
   constexpr double rate = 2.0 * std::numbers::pi / wave;

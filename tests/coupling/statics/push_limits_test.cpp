@@ -1,4 +1,4 @@
-// Wires at the ends of what a file may say: a reason, never a crash and never a number that is none.
+// Wires at the ends of what a file may say: a reason, never a crash and never a value that is not a number.
 
 #include "tests/support/declared_wire.hpp"
 

@@ -222,7 +222,7 @@ TEST(LeastSquares, ProfileOfANearlyLinearNumberIsItsStandardError) {
   EXPECT_NEAR(*interval.upper - *interval.lower, 2.0 * 1.96 * deviation, 0.1 * 3.92 * deviation);
 }
 
-// Where the numbers are held at an end and all others fitted anew, chi2 has risen by what was asked, with
+// Where the numbers are held at an end and all others fitted again, chi2 has risen by what was asked, with
 // much noise as with little.
 TEST(LeastSquares, AtTheEndsOfAProfileAFitOfTheOthersHasRisenByWhatWasAsked) {
   constexpr double rise = 3.84;

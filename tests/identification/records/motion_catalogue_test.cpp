@@ -92,7 +92,7 @@ TEST(RecordModel, TellsWhatAKeyIsSetTo) {
 }
 
 // What is asked of the first readings is simulated no further, and told the same but for the integration,
-// which starts anew at other times.
+// which starts again at other times.
 TEST(RecordModel, PredictsTheFirstReadingsAlone) {
   const RecordSet set = read_records(records / "flight_attachment.toml");
   const RecordModel model(set);
