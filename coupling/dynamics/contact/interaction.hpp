@@ -20,8 +20,8 @@ namespace snare::coupling {
 
 /// Where the integrals along a run stand: powers [W], sums of all outer forces [N] and moments about the
 /// origin [N m] on wires and free bodies, the force of every interaction on the wire or the first of two [N],
-/// and behind them the normal force of each. The dissipation of laws has kinks, which the integrator's formula does
-/// not see: that sum is LossSum's.
+/// and behind them the normal force of each. The dissipation of laws has kinks, which the integrator's
+/// formula does not see: that sum is LossSum's.
 namespace integral {
 constexpr Eigen::Index dissipated = 0;
 constexpr Eigen::Index work = 1;
