@@ -44,7 +44,7 @@ Parted part(const MatrixXd& scaled, const MatrixXd& error, const VectorXd& scale
     const double doubt = error.size() > 0 ? (error * v).norm() : 0.0;
     bool is_null = svd.s[k] <= error_margin * doubt + least_margin;
     const bool ask = is_null ? doubt > in_doubt : svd.s[k] <= near_margin * doubt && svd.s[k] < weakly_seen;
-    if (ask && check) is_null = check(v.cwiseProduct(scale));
+    if (ask && check) is_null = check(v.cwiseProduct(scale)).value_or(is_null);
     if (is_null) {
       null.push_back(k);
       largest_error = std::max(largest_error, doubt);
@@ -111,7 +111,7 @@ Identifiability identifiability_of(const MatrixXd& jacobian, const MatrixXd& err
   for (Index k = 0; k < n; ++k) {
     const double norm = jacobian.col(k).norm();
     bool is_null = norm <= (error.size() > 0 ? error_margin * error.col(k).norm() : 0.0);
-    if (is_null && norm > 0.0 && check) is_null = check(VectorXd::Unit(n, k) / norm);
+    if (is_null && norm > 0.0 && check) is_null = check(VectorXd::Unit(n, k) / norm).value_or(is_null);
     if (!is_null) {
       live.push_back(k);
       scale[k] = 1.0 / norm;

@@ -234,8 +234,7 @@ double noise_of(const RecordData& data, const RecordFit& optimum) {
 /// moves, at most that far.
 Move move_along(const RecordData& data, const RecordFit& optimum, const Eigen::VectorXd& direction,
                 Eigen::Index held, double share) {
-  // scales, a fifth of a declared number: far beyond its standard error, were it known
-  constexpr double far = 20.0;
+  constexpr double far = 200.0;  // scales, twice a declared number
   Move move;
   move.held = held;
   const double by_scale =
@@ -271,26 +270,21 @@ double rise_of(const RecordData& data, const RecordFit& optimum, double chi2) {
   return (chi2 - optimum.chi2) / (noise * noise);
 }
 
-/// Whether chi2 stays where it is along a direction about whose derivatives there is doubt: on one side, or
-/// on the other where the first has a bound or cannot be simulated.
-bool stays_along(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
-                 const Eigen::VectorXd& direction) {
-  Eigen::Index held = 0;  // what moves most
-  optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs().maxCoeff(&held);
-  for (const double side : {1.0, -1.0}) {
-    const Move move = move_along(data, optimum, direction, held, side);
-    if (move.clipped) continue;
-    if (const std::optional<RecordFit> moved = refitted(model, data, move))
-      return is_no_rise(rise_of(data, optimum, moved->chi2), move.promised);
-  }
-  return false;
-}
+// Rises of chi2 that end the way through a valley: what chance does not do, and too far up its side.
+constexpr double clear_rise = 2.0, steep_rise = 9.0;
+constexpr double can_tell = 3.0;  // change of the residual: a rise by its square is told from none
 
 /// Where a number is held at a share of its way, the others refitted.
 struct ValleyPoint {
   double share = 0.0;                   ///< of the way that should change the residual by `doubtful_change`
   double rise = 0.0;                    ///< of chi2 [-]
+  double promised = 0.0;                ///< change of the residual, over its noise, by the derivatives
   std::vector<RecordSetting> settings;  ///< of all numbers
+
+  [[nodiscard]] bool rises() const { return rise >= clear_rise; }
+  [[nodiscard]] bool ends() const { return share >= 1.0 || rises(); }
+  /// Whether it is known that chi2 rises here, or that it does not though the derivatives say so.
+  [[nodiscard]] bool tells() const { return rises() || promised >= can_tell; }
 };
 
 /// The move to `share`, the others on the polynomial through the last points, of which there may be three.
@@ -311,38 +305,56 @@ Move carried_on(Move move, double share, const std::vector<ValleyPoint>& points)
   return move;
 }
 
-/// Follows the valley of chi2 from the answer to one side (1 or -1): number k is held at points along
-/// `direction`, the others are fitted again. Steps are shorter where nothing can be simulated. Returns the
-/// last point: the end of the way, or where it ends before.
+/// Follows the valley of chi2 from the answer to one side (1 or -1) until it rises clearly: number k is held
+/// at points along `direction`, the others are fitted again. Steps are shorter where nothing can be simulated
+/// and where chi2 has risen too far. Returns the last point: where it has risen, the end of the way, or where
+/// it ends before, as at a bound.
 ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
                           const Eigen::VectorXd& direction, Eigen::Index k, double side) {
   constexpr double first_step = 0.25, least_step = 0.005;
   constexpr int most_fits = 24;
-  std::vector<ValleyPoint> points{{0.0, 0.0, optimum.settings}};
+  std::vector<ValleyPoint> points{{0.0, 0.0, 0.0, optimum.settings}};
   double step = first_step;
-  for (int fits = 0; fits < most_fits && points.back().share < 1.0 && !model.stopped(); ++fits) {
+  for (int fits = 0; fits < most_fits && !points.back().ends() && !model.stopped(); ++fits) {
     const double share = std::min(1.0, points.back().share + step);
     const Move move = carried_on(move_along(data, optimum, direction, k, side * share), share, points);
     const std::optional<RecordFit> there = move.clipped ? std::nullopt : refitted(model, data, move);
-    if (!there && step < least_step) break;
-    step *= there ? 2.0 : 0.5;
-    if (!there) continue;
+    const double rise = there ? rise_of(data, optimum, there->chi2) : 0.0;
+    if (!there || rise > steep_rise) {
+      if (!there && step < least_step) break;
+      if (step >= least_step) {
+        step *= 0.5;
+        continue;
+      }
+    }
+    step *= 2.0;
     std::vector<RecordSetting> settings = there->settings;
     settings.insert(settings.begin() + k, move.settings[static_cast<std::size_t>(k)]);
-    points.push_back({share, rise_of(data, optimum, there->chi2), std::move(settings)});
+    points.push_back({share, rise, move.promised, std::move(settings)});
   }
   return points.back();
 }
 
-/// A point to one side of the answer at which chi2 has not risen as the interval of number k promises; none
-/// where it has, or where the way ends, at a bound or where nothing can be simulated, before that could be
-/// told. Where half the way chi2 rises along a straight line as in a linear model nothing is fitted again,
-/// unless the numbers nearly go together: a valley that the derivatives miss by a little rises, too.
+/// Whether chi2 stays where it is along a direction about whose derivatives there is doubt; none where the
+/// way ends on both sides before that can be told.
+std::optional<bool> stays_along(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
+                                const Eigen::VectorXd& direction) {
+  Eigen::Index held = 0;  // what moves most
+  optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs().maxCoeff(&held);
+  for (const double side : {1.0, -1.0}) {
+    const ValleyPoint end = follow_valley(model, data, optimum, direction, held, side);
+    if (end.tells()) return !end.rises();
+  }
+  return std::nullopt;
+}
+
+/// Follows the valley to one side of the answer of number k, unless half the way chi2 rises along a straight
+/// line as in a linear model; numbers that nearly go together are followed in any case: a valley that the
+/// derivatives miss by a little rises, too. None where the interval stands, or where the way ends, at a bound
+/// or where nothing can be simulated, before that could be told.
 std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordData& data,
                                          const RecordFit& optimum, const Eigen::VectorXd& direction,
                                          Eigen::Index k, double side) {
-  // change of the residual: a rise by its square, 4, is told from none, below 1.8
-  constexpr double can_tell = 2.0;
   const Eigen::VectorXd effect =
       optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs();
   const bool go_together = (optimum.jacobian * direction).norm() < 0.1 * effect.maxCoeff();
@@ -354,40 +366,70 @@ std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordD
     if (share > 0.5 && share < 2.0) return std::nullopt;
   }
   const ValleyPoint end = follow_valley(model, data, optimum, direction, k, side);
-  const double promised = 2.0 * half.promised * end.share;
-  if (model.stopped() || (promised < can_tell && end.share < 1.0) || !is_no_rise(end.rise, promised))
-    return std::nullopt;
+  if (model.stopped() || !end.tells()) return std::nullopt;
   return end;
 }
 
-/// Numbers whose interval the readings do not bear out become null directions: where the readings depend on a
-/// number by its square, as on the height of a probe above a plane of symmetry, every answer beside the plane
-/// has a derivative and the plane has none. What has moved by more than its standard error on the way belongs
-/// to the direction.
-void test_intervals(const RecordModel& model, const RecordData& data, RecordFit& fit) {
-  const Eigen::Index count = fit.rank.covariance.rows();
-  for (Eigen::Index k = 0; k < count && !model.stopped(); ++k) {
-    const Eigen::MatrixXd& covariance = fit.rank.covariance;
-    if (!fit.rank.is_known(static_cast<std::size_t>(k)) || !(covariance(k, k) > 0.0)) continue;
-    Eigen::VectorXd direction = covariance.col(k) / covariance(k, k);
-    std::optional<ValleyPoint> valley = valley_beside(model, data, fit, direction, k, 1.0);
-    if (!valley) valley = valley_beside(model, data, fit, direction, k, -1.0);
-    if (!valley) continue;
-    const auto moved = [&](Eigen::Index i) {
-      const auto at = static_cast<std::size_t>(i);
-      return (valley->settings[at].value - fit.settings[at].value) / fit.settings[at].number.scale;
-    };
-    std::vector<std::size_t> others;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      if (i == k) continue;
-      const double deviation = std::sqrt(covariance(i, i)) * noise_of(data, fit);
-      const bool goes_along =
-          fit.rank.is_known(static_cast<std::size_t>(i)) && std::abs(moved(i)) > deviation;
-      if (goes_along) others.push_back(static_cast<std::size_t>(i));
-      direction[i] = moved(i) / moved(k);
-    }
-    fit.rank.add_direction(static_cast<std::size_t>(k), others, direction, fit.jacobian);
+/// Adds the null direction in which number k has moved to the end of a valley. What has moved by more than
+/// its standard error on the way belongs to it.
+void add_valley(const RecordData& data, const ValleyPoint& valley, Eigen::Index k, RecordFit& fit) {
+  const Eigen::MatrixXd& covariance = fit.rank.covariance;
+  const auto moved = [&](Eigen::Index i) {
+    const auto at = static_cast<std::size_t>(i);
+    return (valley.settings[at].value - fit.settings[at].value) / fit.settings[at].number.scale;
+  };
+  Eigen::VectorXd direction(covariance.rows());
+  std::vector<std::size_t> others;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    direction[i] = moved(i) / moved(k);
+    const double deviation = std::sqrt(covariance(i, i)) * noise_of(data, fit);
+    const bool goes_along =
+        i != k && fit.rank.is_known(static_cast<std::size_t>(i)) && std::abs(moved(i)) > deviation;
+    if (goes_along) others.push_back(static_cast<std::size_t>(i));
   }
+  fit.rank.add_direction(static_cast<std::size_t>(k), others, direction, fit.jacobian);
+}
+
+/// Compares the interval of every number with the rise of chi2 to both sides of the answer. Where it does not
+/// rise the number becomes a null direction: where the readings depend on a number by its square, as on the
+/// height of a probe above a plane of symmetry, every answer beside the plane has a derivative and the plane
+/// has none. Where the interval misses the profile of chi2, by the wider of its sides, by a factor of 2 it
+/// becomes the profile's: the factors of the standard errors come back.               theory.md (I.32)
+Eigen::VectorXd test_intervals(const RecordModel& model, const RecordData& data, RecordFit& fit) {
+  const Eigen::Index count = fit.rank.covariance.rows();
+  Eigen::VectorXd factors = Eigen::VectorXd::Ones(count);
+  for (Eigen::Index k = 0; k < count && !model.stopped(); ++k) {
+    const double variance = fit.rank.covariance(k, k);
+    if (!fit.rank.is_known(static_cast<std::size_t>(k)) || !(variance > 0.0)) continue;
+    const Eigen::VectorXd direction = fit.rank.covariance.col(k) / variance;
+    double widest = 0.0;
+    for (const double side : {1.0, -1.0}) {
+      const std::optional<ValleyPoint> valley = valley_beside(model, data, fit, direction, k, side);
+      if (valley && !valley->rises()) {
+        add_valley(data, *valley, k, fit);
+        break;
+      }
+      widest = std::max(widest, valley ? valley->promised / std::sqrt(valley->rise) : 1.0);
+    }
+    const bool misses = widest > 2.0 || widest < 0.5;
+    if (misses && fit.rank.is_known(static_cast<std::size_t>(k))) factors[k] = widest;
+  }
+  return factors;
+}
+
+/// The covariance with one number of each null direction held.
+void hold_null_directions(const RecordData& data, RecordFit& fit) {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index k = 0; k < fit.rank.covariance.rows(); ++k)
+    if (fit.rank.covariance(k, k) > 0.0) free.push_back(k);
+  fit.covariance.setZero();
+  if (free.empty()) return;
+  const ColouredNoise noise = coloured_noise(data, fit.residual, static_cast<Eigen::Index>(free.size()));
+  Eigen::VectorXd scale(static_cast<Eigen::Index>(free.size()));
+  for (Eigen::Index k = 0; k < scale.size(); ++k)
+    scale[k] = fit.settings[static_cast<std::size_t>(free[static_cast<std::size_t>(k)])].number.scale;
+  fit.covariance(free, free) =
+      scale.asDiagonal() * sandwich(data, noise, fit.jacobian(Eigen::all, free)) * scale.asDiagonal();
 }
 
 }  // namespace
@@ -402,19 +444,11 @@ void find_rank(const RecordModel& model, const RecordData& data, RecordFit& fit)
   fit.rank = identifiability_of(fit.jacobian, wide - fit.jacobian, [&](const Eigen::VectorXd& direction) {
     return stays_along(model, data, fit, direction);
   });
-  test_intervals(model, data, fit);
-  if (fit.rank.directions.empty() || fit.covariance.cols() != numbers) return;
-  std::vector<Eigen::Index> free;
-  for (Eigen::Index k = 0; k < numbers; ++k)
-    if (fit.rank.covariance(k, k) > 0.0) free.push_back(k);
-  fit.covariance.setZero();
-  if (free.empty()) return;
-  const ColouredNoise noise = coloured_noise(data, fit.residual, static_cast<Eigen::Index>(free.size()));
-  Eigen::VectorXd scale(static_cast<Eigen::Index>(free.size()));
-  for (Eigen::Index k = 0; k < scale.size(); ++k)
-    scale[k] = fit.settings[static_cast<std::size_t>(free[static_cast<std::size_t>(k)])].number.scale;
-  fit.covariance(free, free) =
-      scale.asDiagonal() * sandwich(data, noise, fit.jacobian(Eigen::all, free)) * scale.asDiagonal();
+  const Eigen::VectorXd factors = test_intervals(model, data, fit);
+  fit.rank.covariance = factors.asDiagonal() * fit.rank.covariance * factors.asDiagonal();
+  if (fit.covariance.cols() != numbers) return;
+  if (!fit.rank.directions.empty()) hold_null_directions(data, fit);
+  fit.covariance = factors.asDiagonal() * fit.covariance * factors.asDiagonal();
 }
 
 }  // namespace snare::identification

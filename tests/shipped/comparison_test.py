@@ -10,7 +10,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
 import shipped  # noqa: E402
 from results_pages import REGION  # noqa: E402
 
-MAKER = shipped.Maker(len, (), relative=1e-2, absolute=1e-6, pixels=0.01, named=((r"(^|\.)p$", (0.0, 0.02)),), long=False)
+MAKER = shipped.Maker(len, (), relative=1e-2, absolute=1e-6, pixels=0.01, named=((r"(^|\.)p(=|$)", (0.0, 0.02)),), long=False)
 
 
 def found(path, stored, made):
@@ -35,6 +35,10 @@ class Comparison(unittest.TestCase):
     def test_a_key_may_have_a_tolerance_of_its_own(self):
         self.assertEqual(found("a.json", '{"fit": {"p": 0.01}}', '{"fit": {"p": 0.029}}'), [])
         self.assertEqual(len(found("a.json", '{"fit": {"p": 0.01}}', '{"fit": {"p": 0.031}}')), 1)
+
+    def test_a_column_may_have_a_tolerance_of_its_own(self):
+        self.assertEqual(found("a.csv", "case,p\n1,0.01\n", "case,p\n1,0.029\n"), [])
+        self.assertEqual(len(found("a.csv", "case,p_1\n1,0.01\n", "case,p_1\n1,0.029\n")), 1)
 
     def test_numbers_in_a_text_differ_by_the_tolerance_or_the_last_place(self):
         self.assertEqual(found("a.toml", "length_mm = 175.123456", "length_mm = 175.123457"), [])

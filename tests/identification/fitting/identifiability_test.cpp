@@ -114,6 +114,17 @@ TEST(Identifiability, AsksWhereTheErrorsLeaveADirectionInDoubt) {
   EXPECT_EQ(identifiability_of(j, error, check(true)).directions.size(), 1u);
 }
 
+TEST(Identifiability, WhereTheCheckCannotTellTheErrorsDecide) {
+  const MatrixXd own = random_columns(30, 2, 5);
+  MatrixXd j(30, 3);
+  j << own, own.col(0) - own.col(1);
+  const MatrixXd error = 0.05 * random_columns(30, 3, 7);
+  const NullCheck cannot_tell = [](const VectorXd&) { return std::nullopt; };
+  EXPECT_EQ(identifiability_of(j, error, cannot_tell).directions.size(), 1u);
+  j.col(2) += 0.5 * random_columns(30, 1, 9);
+  EXPECT_TRUE(identifiability_of(j, error, cannot_tell).directions.empty());
+}
+
 TEST(Identifiability, ManyMoreNumbersThanReadingsAreOpen) {
   const Identifiability found = identifiability_of(random_columns(2, 5, 8), {});
   EXPECT_EQ(found.directions.size(), 3u);
