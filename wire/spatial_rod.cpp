@@ -32,19 +32,22 @@ SpatialState SpatialRod::make_state(const Eigen::VectorXd& q, const Controls& co
   state.frames.resize(base::at(n));
   state.reference_twist.assign(base::at(n + 1), 0.0);
   const auto tangent = [&](int e) { return Vector3d(vertex(state, e + 1) - vertex(state, e)).normalized(); };
-  Frame frame{tangent(0), any_normal(tangent(0))};
-  if (properties_.left.orients()) {
-    state.left_mount = Frame{properties_.left.direction, properties_.left.director};
-    frame = *state.left_mount;
+  const auto mounted = [](const SpatialEnd& end) -> std::optional<Frame> {
+    if (!end.orients()) return std::nullopt;
+    return Frame{end.direction, end.director};
+  };
+  state.left_mount = mounted(properties_.left);
+  state.right_mount = mounted(properties_.right);
+  Frame frame = state.left_mount.value_or(Frame{tangent(0), any_normal(tangent(0))});
+  if (!state.left_mount && state.right_mount) {  // untwisted from the end that is held
+    frame = *state.right_mount;
+    for (int e = n - 1; e >= 0; --e) frame = transport(frame, tangent(e));
   }
   for (int e = 0; e < n; ++e) {
     frame = transport(frame, tangent(e));
     state.frames[base::at(e)] = frame;
   }
-  if (properties_.right.orients()) {
-    state.right_mount = Frame{properties_.right.direction, properties_.right.director};
-    state.reference_twist.back() = reference_twist(frame, *state.right_mount, 0.0);
-  }
+  if (state.right_mount) state.reference_twist.back() = reference_twist(frame, *state.right_mount, 0.0);
   return state;
 }
 

@@ -279,6 +279,21 @@ TEST(SpatialRod, TwistingPinHoldsTheTwistOnly) {
   EXPECT_LT(at.gradient.lpNorm<Eigen::Infinity>(), 1e-13);  // EA eps L/h
 }
 
+TEST(SpatialRod, BeginsUntwistedFromTheEndThatIsHeld) {
+  for (const SpatialEnd::Kind free : {SpatialEnd::Kind::free, SpatialEnd::Kind::pin}) {
+    SpatialRodProperties p = test::round_properties();
+    p.weight.setZero();
+    p.left.kind = free;
+    p.right.position = 1.05 * Vector3d::UnitX();
+    p.right.direction = Vector3d::UnitX();
+    for (const double turn : {0.0, 0.7, 0.5 * pi, 2.5}) {
+      p.right.director = {0.0, std::cos(turn), std::sin(turn)};
+      const SpatialRod rod(MaterialMesh(4, 5, 0.7), p);
+      EXPECT_NEAR(rod.energy(rod.straight_state(kControls)), 0.0, 1e-15) << turn;
+    }
+  }
+}
+
 TEST(SpatialRod, RoundRodBendsIndependentlyOfItsTwist) {
   std::mt19937 random(10);
   SpatialRodProperties p = test::round_properties();
