@@ -116,10 +116,13 @@ class PlanarContact {
       }
     }
     spread(on_slopes, f);
-    constexpr double least_load = 1e-6, forgetting = 0.01;  // [N], [s]
-    for (std::size_t i = 0; i < n; ++i)
-      sum.bristle_rates.push_back((flow[i] - least_load * bristles[i] / forgetting) /
-                                  (pressed[i] + least_load));
+    constexpr double least_load = 1e-6;  // [N]
+    for (std::size_t i = 0; i < n; ++i) {
+      const double share = least_load / (pressed[i] + least_load);
+      const double forgotten =
+          bristles[i] == 0.0 ? 0.0 : 10.0 * share * share * share * bristles[i] / striker_.rubbing.time;
+      sum.bristle_rates.push_back(flow[i] / (pressed[i] + least_load) - forgotten);
+    }
     return sum;
   }
 

@@ -258,14 +258,6 @@ Verdict judge_strike(const StrikeProblem& s) {
       },
       [&](const coupling::MotionResult& result) {
         if (!result.impulse.empty()) impulse = p.plane.seen(result.impulse[0]);
-        // What a bristle still holds of one touch is lost in the first moments of the next one, in which the
-        // error test does not follow it.
-        int touches = 0;
-        for (const coupling::MotionEvent& e : result.events) {
-          if (e.kind == coupling::MotionEvent::Kind::touch && ++touches == 2 &&
-              s.striker.rubbing.law == Rubbing::Law::bristles)
-            return e.time;
-        }
         return std::numeric_limits<double>::infinity();
       });
   v.text +=

@@ -89,19 +89,19 @@ Rubbed<S> rub(const MotionFriction& friction, const Pressed<S>& a, const Vector3
   r.force = lifted(f.force, in, [&](const BristleChangeIn<3>& by) { return force_change(f, by); });
   r.heat = f.force.dot(at.sliding);
   if (!friction.has_bristle()) return r;
-  constexpr double idle = BristleMeans::idle_load, forget = idle / BristleMeans::idle_time;
   const double time = friction.bristle_time;
   const BristleFlowIn<3> flow = bristle_flow(friction, at, f, value_of(a.elastic_rate));
   const Vector3<S> lying_flow = lifted(
       flow.flow, in, [&](const BristleChangeIn<3>& by) { return flow_change(friction, at, f, flow, by); });
   const S decay =
       a.elastic / S(time) + S(0.5) * (flow.growth_follows ? a.elastic_rate : -a.elastic / S(time));
-  r.rate = R_WS.transpose() * (lying_flow - upright * decay - bent * S(forget)) / (a.elastic + S(idle));
+  const S load = a.elastic + S(idle_load), forgetting = forgetting_rate(load, time);
+  r.rate = R_WS.transpose() * ((lying_flow - upright * decay) / load - bent * forgetting);
   r.slider_speed = f.slider_speed;
   const double stiffness = friction.static_coefficient / friction.bristle_displacement;
   const double square = values_of(bent).squaredNorm(), upright_square = values_of(upright).squaredNorm();
-  r.energy = 0.5 * stiffness * (at.elastic + idle) * square;
-  r.heat = flow.heat + stiffness * (forget * square +
+  r.energy = 0.5 * stiffness * value_of(load) * square;
+  r.heat = flow.heat + stiffness * (value_of(forgetting * load) * square +
                                     (value_of(decay) - 0.5 * value_of(a.elastic_rate)) * upright_square);
   return r;
 }
@@ -228,8 +228,8 @@ void BodyContactPart::residual(const numerics::DaePoint& at, Eigen::Ref<Eigen::V
 }
 
 Eigen::VectorXd BodyContactPart::bristle_rates(const std::vector<Acting>& list, const VectorView& y) const {
-  Eigen::VectorXd rates =
-      -y.segment(bristle_, 3 * static_cast<Eigen::Index>(contact_.points.size())) / BristleMeans::idle_time;
+  const double idle = forgetting_rate(idle_load, contact_.friction.bristle_time);
+  Eigen::VectorXd rates = -idle * y.segment(bristle_, 3 * static_cast<Eigen::Index>(contact_.points.size()));
   for (const Acting& a : list) rates.segment<3>(3 * static_cast<Eigen::Index>(a.point)) = a.rubbed.rate;
   return rates;
 }
@@ -248,7 +248,7 @@ void BodyContactPart::jacobian(const numerics::DaePoint& at, double c, std::vect
   for (const auto& [index, field] : points_inside(motions<2>(frames(), at.y))) inside[index] = true;
   for (std::size_t k = 0; k < coupled_.size(); ++k) {
     for (int a = bristle_of(k); a < bristle_of(k) + 3; ++a)
-      into.add(a, a, inside[k] ? c : c + 1.0 / BristleMeans::idle_time);
+      into.add(a, a, inside[k] ? c : c + forgetting_rate(idle_load, contact_.friction.bristle_time));
   }
 }
 

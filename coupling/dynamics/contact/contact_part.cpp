@@ -282,7 +282,7 @@ numerics::IterationStart ContactPart::iteration_start(const VectorView& from, co
 }
 
 void ContactPart::add_up_bristles(const VectorView& y, ContactCache& found) const {
-  found.bristles.begin(y.segment(bristle_, 2 * rod_.vertices()));
+  found.bristles.begin(rod_.vertices());
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
     const QuadraturePoint& n = found.nodes[q];
     const ContactGeometry& g = found.geometries[q];
@@ -292,7 +292,7 @@ void ContactPart::add_up_bristles(const VectorView& y, ContactCache& found) cons
                          share * bristle_flow_at(n, h, g, y).flow);
     }
   }
-  found.bristles.finish();
+  found.bristles.finish(y.segment(bristle_, 2 * rod_.vertices()), contact_.friction.bristle_time);
 }
 
 void ContactPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {

@@ -309,8 +309,7 @@ numerics::IterationStart WirePairPart::iteration_start(const VectorView& from, c
 }
 
 void WirePairPart::add_up_bristles(const VectorView& y, ContactCache& found) const {
-  for (std::size_t w = 0; w < 2; ++w)
-    found.bristles[w].begin(y.segment(bristles_[w], 2 * rods_[w]->vertices()));
+  for (std::size_t w = 0; w < 2; ++w) found.bristles[w].begin(rods_[w]->vertices());
   for (std::size_t q = 0; q < found.nodes.size(); ++q) {
     const QuadraturePoint& n = found.nodes[q];
     const PairGeometry& g = found.geometries[q];
@@ -320,7 +319,8 @@ void WirePairPart::add_up_bristles(const VectorView& y, ContactCache& found) con
                                 share * bristle_flow_at(n, h, g, y).flow);
     }
   }
-  for (BristleMeans& b : found.bristles) b.finish();
+  for (std::size_t w = 0; w < 2; ++w)
+    found.bristles[w].finish(y.segment(bristles_[w], 2 * rods_[w]->vertices()), pair_.friction.bristle_time);
 }
 
 void WirePairPart::residual(const DaePoint& at, Eigen::Ref<Eigen::VectorXd> rows) {
