@@ -296,16 +296,6 @@ def htv_envelope_wires(snare, root, folder):
             gallery("htv_envelope_wires.svg"): map_of(folder, "mean of caught")}
 
 
-FINE_ENVELOPE = ("vary[1].points=21", "vary[2].points=21", "refine.of=caught")
-
-
-@maker(results("htv_envelope_fine.csv"), gallery("htv_envelope_fine.svg"), long=True, **CAPTURE)
-def htv_envelope_fine(snare, root, folder):
-    """The same of 21 x 21 starts, refined where the outcome changes; takes half an hour."""
-    cases = sweep(snare, root, folder, "htv_envelope_wires", changes=FINE_ENVELOPE)
-    return {results("htv_envelope_fine.csv"): cases, gallery("htv_envelope_fine.svg"): map_of(folder, "mean of caught")}
-
-
 @maker(results("htv_order.csv"), **CAPTURE, long=True)
 def htv_order(snare, root, folder):
     """Which wire touches first, by the place of the shaft: cases."""

@@ -320,13 +320,12 @@ ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, cons
     const Move move = carried_on(move_along(data, optimum, direction, k, side * share), share, points);
     const std::optional<RecordFit> there = move.clipped ? std::nullopt : refitted(model, data, move);
     const double rise = there ? rise_of(data, optimum, there->chi2) : 0.0;
-    if (!there || rise > steep_rise) {
-      if (!there && step < least_step) break;
-      if (step >= least_step) {
-        step *= 0.5;
-        continue;
-      }
+    const bool too_far = !there || rise > steep_rise;
+    if (too_far && step >= least_step) {
+      step *= 0.5;
+      continue;
     }
+    if (!there) break;
     step *= 2.0;
     std::vector<RecordSetting> settings = there->settings;
     settings.insert(settings.begin() + k, move.settings[static_cast<std::size_t>(k)]);
@@ -348,8 +347,8 @@ std::optional<bool> stays_along(const RecordModel& model, const RecordData& data
   return std::nullopt;
 }
 
-/// Follows the valley to one side of the answer of number k, unless half the way chi2 rises along a straight
-/// line as in a linear model; numbers that nearly go together are followed in any case: a valley that the
+/// Follows the valley to one side of the answer of number k, unless chi2 rises half the way along a straight
+/// line as in a linear model. Numbers that nearly go together are followed in any case: a valley that the
 /// derivatives miss by a little rises, too. None where the interval stands, or where the way ends, at a bound
 /// or where nothing can be simulated, before that could be told.
 std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordData& data,

@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 
 import shipped  # noqa: E402
 
-SWEEPS = {"htv_envelope": (), "htv_envelope_wires": (), "htv_envelope_fine": shipped.FINE_ENVELOPE, "htv_order": ()}  # changes of the file
+SWEEPS = ("htv_envelope", "htv_envelope_wires", "htv_order")
 
 
 def collected(summary, rule):
@@ -41,10 +41,9 @@ def collected(summary, rule):
     return max(numbers) if how == "max" and numbers else (numbers[0] if not how and numbers else None)
 
 
-def run_case(snare, sweep, changes, number, folder):
+def run_case(snare, sweep, number, folder):
     """The summary of a case; none where it is refused."""
-    overrides = [word for change in changes for word in ("--set", change)]
-    done = subprocess.run([snare, "sweep", f"data/sweeps/{sweep}.toml", "--case", str(number), "--out", folder, "--quiet", *overrides], cwd=ROOT,
+    done = subprocess.run([snare, "sweep", f"data/sweeps/{sweep}.toml", "--case", str(number), "--out", folder, "--quiet"], cwd=ROOT,
                           capture_output=True, text=True)
     if done.returncode == 2:
         return None
@@ -63,13 +62,11 @@ def differs(column, cell, value, maker):
 def compare(snare, name, rows, seed):
     """Lines: cells that differ."""
     stored = list(csv.DictReader((ROOT / shipped.results(f"{name}.csv")).open(encoding="utf-8")))
-    changes = SWEEPS[name]
-    sweep = "htv_envelope_wires" if changes else name
-    rules = tomllib.loads((ROOT / f"data/sweeps/{sweep}.toml").read_text(encoding="utf-8"))["collect"]
+    rules = tomllib.loads((ROOT / f"data/sweeps/{name}.toml").read_text(encoding="utf-8"))["collect"]
     alone = [row for row in stored if row["status"] in ("done", "refused")]
     for row in random.Random(f"{name} {seed}").sample(alone, min(rows, len(alone))):
         with tempfile.TemporaryDirectory() as folder:
-            summary = run_case(snare, sweep, changes, row["case"], folder)
+            summary = run_case(snare, name, row["case"], folder)
         if (summary is None) != (row["status"] == "refused"):
             yield f"case {row['case']} is stored as {row['status']}"
         elif summary is not None:
