@@ -311,8 +311,8 @@ Move carried_on(Move move, double share, const std::vector<ValleyPoint>& points)
 /// it ends before, as at a bound.
 ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
                           const Eigen::VectorXd& direction, Eigen::Index k, double side) {
-  constexpr double first_step = 0.25, least_step = 0.005;
-  constexpr int most_fits = 24;
+  constexpr double first_step = 0.35, least_step = 0.005;
+  constexpr int most_fits = 12;
   std::vector<ValleyPoint> points{{0.0, 0.0, 0.0, optimum.settings}};
   double step = first_step;
   for (int fits = 0; fits < most_fits && !points.back().ends() && !model.stopped(); ++fits) {
@@ -393,13 +393,16 @@ void add_valley(const RecordData& data, const ValleyPoint& valley, Eigen::Index 
 /// rise the number becomes a null direction: where the readings depend on a number by its square, as on the
 /// height of a probe above a plane of symmetry, every answer beside the plane has a derivative and the plane
 /// has none. Where the interval misses the profile of chi2, by the wider of its sides, by a factor of 2 it
-/// becomes the profile's: the factors of the standard errors come back.               theory.md (I.32)
+/// becomes the profile's: the factors of the standard errors come back. On a bound chi2 has a slope, and
+/// nothing is asked.                                                                  theory.md (I.32)
 Eigen::VectorXd test_intervals(const RecordModel& model, const RecordData& data, RecordFit& fit) {
   const Eigen::Index count = fit.rank.covariance.rows();
   Eigen::VectorXd factors = Eigen::VectorXd::Ones(count);
   for (Eigen::Index k = 0; k < count && !model.stopped(); ++k) {
     const double variance = fit.rank.covariance(k, k);
-    if (!fit.rank.is_known(static_cast<std::size_t>(k)) || !(variance > 0.0)) continue;
+    const RecordSetting& number = fit.settings[static_cast<std::size_t>(k)];
+    const bool on_bound = number.value <= number.number.lower || number.value >= number.number.upper;
+    if (!fit.rank.is_known(static_cast<std::size_t>(k)) || !(variance > 0.0) || on_bound) continue;
     const Eigen::VectorXd direction = fit.rank.covariance.col(k) / variance;
     double widest = 0.0;
     for (const double side : {1.0, -1.0}) {
