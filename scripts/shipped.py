@@ -293,7 +293,7 @@ def htv_envelope(snare, root, folder):
 def htv_envelope_wires(snare, root, folder):
     """The envelope of a capture, quasi-static wires: cases and map; takes a quarter of an hour."""
     return {results("htv_envelope_wires.csv"): sweep(snare, root, folder, "htv_envelope_wires"),
-            gallery("htv_envelope_wires.svg"): map_of(folder, "mean of caught")}
+            gallery("htv_envelope_wires.svg"): map_of(folder, "share of cases with caught")}
 
 
 @maker(results("htv_order.csv"), **CAPTURE, long=True)

@@ -307,10 +307,10 @@ Move carried_on(Move move, double share, const std::vector<ValleyPoint>& points)
 
 /// Follows the valley of chi2 from the answer to one side (1 or -1) until it rises clearly: number k is held
 /// at points along `direction`, the others are fitted again. Steps are shorter where nothing can be simulated
-/// and where chi2 has risen too far. Returns the last point: where it has risen, the end of the way, or where
-/// it ends before, as at a bound.
+/// and where chi2 has risen by more than `most`. Returns the last point: where it has risen, the end of the
+/// way, or where it ends before, as at a bound.
 ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
-                          const Eigen::VectorXd& direction, Eigen::Index k, double side) {
+                          const Eigen::VectorXd& direction, Eigen::Index k, double side, double most) {
   constexpr double first_step = 0.35, least_step = 0.005;
   constexpr int most_fits = 12;
   std::vector<ValleyPoint> points{{0.0, 0.0, 0.0, optimum.settings}};
@@ -320,7 +320,7 @@ ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, cons
     const Move move = carried_on(move_along(data, optimum, direction, k, side * share), share, points);
     const std::optional<RecordFit> there = move.clipped ? std::nullopt : refitted(model, data, move);
     const double rise = there ? rise_of(data, optimum, there->chi2) : 0.0;
-    const bool too_far = !there || rise > steep_rise;
+    const bool too_far = !there || rise > most;
     if (too_far && step >= least_step) {
       step *= 0.5;
       continue;
@@ -341,30 +341,34 @@ std::optional<bool> stays_along(const RecordModel& model, const RecordData& data
   Eigen::Index held = 0;  // what moves most
   optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs().maxCoeff(&held);
   for (const double side : {1.0, -1.0}) {
-    const ValleyPoint end = follow_valley(model, data, optimum, direction, held, side);
+    const ValleyPoint end =
+        follow_valley(model, data, optimum, direction, held, side, std::numeric_limits<double>::infinity());
     if (end.tells()) return !end.rises();
   }
   return std::nullopt;
 }
 
-/// Follows the valley to one side of the answer of number k, unless chi2 rises half the way along a straight
-/// line as in a linear model. Numbers that nearly go together are followed in any case: a valley that the
-/// derivatives miss by a little rises, too. None where the interval stands, or where the way ends, at a bound
-/// or where nothing can be simulated, before that could be told.
-std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordData& data,
-                                         const RecordFit& optimum, const Eigen::VectorXd& direction,
-                                         Eigen::Index k, double side) {
+/// Whether the numbers that move along a direction nearly make up for each other.
+bool go_together(const RecordFit& optimum, const Eigen::VectorXd& direction) {
   const Eigen::VectorXd effect =
       optimum.jacobian.colwise().norm().transpose().cwiseProduct(direction).cwiseAbs();
-  const bool go_together = (optimum.jacobian * direction).norm() < 0.1 * effect.maxCoeff();
+  return (optimum.jacobian * direction).norm() < 0.1 * effect.maxCoeff();
+}
+
+/// Follows the valley to one side of the answer of number k, unless chi2 rises half the way along a straight
+/// line as in a linear model; `in_any_case`, though it does. None where the interval stands, or where the way
+/// ends, at a bound or where nothing can be simulated, before that could be told.
+std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordData& data,
+                                         const RecordFit& optimum, const Eigen::VectorXd& direction,
+                                         Eigen::Index k, double side, bool in_any_case) {
   const Move half = move_along(data, optimum, direction, k, 0.5 * side);
   const std::vector<RecordPrediction> there = model.predict(half.settings, data.records, data.readings);
-  if (!go_together && !half.clipped && std::ranges::all_of(there, &RecordPrediction::usable)) {
+  if (!in_any_case && !half.clipped && std::ranges::all_of(there, &RecordPrediction::usable)) {
     const double share =
         rise_of(data, optimum, data.residual(there).squaredNorm()) / (half.promised * half.promised);
     if (share > 0.5 && share < 2.0) return std::nullopt;
   }
-  const ValleyPoint end = follow_valley(model, data, optimum, direction, k, side);
+  const ValleyPoint end = follow_valley(model, data, optimum, direction, k, side, steep_rise);
   if (model.stopped() || !end.tells()) return std::nullopt;
   return end;
 }
@@ -398,23 +402,28 @@ void add_valley(const RecordData& data, const ValleyPoint& valley, Eigen::Index 
 Eigen::VectorXd test_intervals(const RecordModel& model, const RecordData& data, RecordFit& fit) {
   const Eigen::Index count = fit.rank.covariance.rows();
   Eigen::VectorXd factors = Eigen::VectorXd::Ones(count);
+  const auto is_small = [](double factor) { return factor > 0.5 && factor < 2.0; };
   for (Eigen::Index k = 0; k < count && !model.stopped(); ++k) {
     const double variance = fit.rank.covariance(k, k);
     const RecordSetting& number = fit.settings[static_cast<std::size_t>(k)];
     const bool on_bound = number.value <= number.number.lower || number.value >= number.number.upper;
     if (!fit.rank.is_known(static_cast<std::size_t>(k)) || !(variance > 0.0) || on_bound) continue;
     const Eigen::VectorXd direction = fit.rank.covariance.col(k) / variance;
+    // A valley that the derivatives of such numbers miss by a little rises, too; one side tells.
+    bool in_any_case = go_together(fit, direction);
     double widest = 0.0;
     for (const double side : {1.0, -1.0}) {
-      const std::optional<ValleyPoint> valley = valley_beside(model, data, fit, direction, k, side);
+      const std::optional<ValleyPoint> valley =
+          valley_beside(model, data, fit, direction, k, side, in_any_case);
       if (valley && !valley->rises()) {
         add_valley(data, *valley, k, fit);
         break;
       }
-      widest = std::max(widest, valley ? valley->promised / std::sqrt(valley->rise) : 1.0);
+      const double factor = valley ? valley->promised / std::sqrt(valley->rise) : 1.0;
+      widest = std::max(widest, factor);
+      in_any_case = in_any_case && !is_small(factor);
     }
-    const bool misses = widest > 2.0 || widest < 0.5;
-    if (misses && fit.rank.is_known(static_cast<std::size_t>(k))) factors[k] = widest;
+    if (!is_small(widest) && fit.rank.is_known(static_cast<std::size_t>(k))) factors[k] = widest;
   }
   return factors;
 }
