@@ -271,7 +271,7 @@ double rise_of(const RecordData& data, const RecordFit& optimum, double chi2) {
 }
 
 // Rises of chi2 that end the way through a valley: what chance does not do, and too far up its side.
-constexpr double clear_rise = 2.0, steep_rise = 9.0;
+constexpr double clear_rise = 2.0, steep_rise = 5.0;
 constexpr double can_tell = 3.0;  // change of the residual: a rise by its square is told from none
 
 /// Where a number is held at a share of its way, the others refitted.
