@@ -326,7 +326,7 @@ ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, cons
       continue;
     }
     if (!there) break;
-    step *= 2.0;
+    step = std::min(2.0 * step, first_step);
     std::vector<RecordSetting> settings = there->settings;
     settings.insert(settings.begin() + k, move.settings[static_cast<std::size_t>(k)]);
     points.push_back({share, rise, move.promised, std::move(settings)});
