@@ -29,36 +29,29 @@ constexpr double wire_radius = 0.75 * mm;
 
 std::shared_ptr<const ContactShape> random_shape(int kind,
                                                  const std::function<double(double, double)>& between) {
-  const auto size = [&](double low, double high) { return between(low, high) * mm; };
-  if (kind == 0) return std::make_shared<Ball>(size(2.0, 15.0));
-  if (kind == 1) {
-    const double radius = size(1.0, 8.0), length = size(10.0, 60.0);
-    return std::make_shared<Capsule>(radius, length);
+  switch (kind) {
+    case 0:
+      return std::make_shared<Ball>(between(2.0, 15.0) * mm);
+    case 1:
+      return std::make_shared<Capsule>(between(1.0, 8.0) * mm, between(10.0, 60.0) * mm);
+    case 2:
+      return finite_cylinder(between(2.0, 10.0) * mm, between(10.0, 60.0) * mm);
+    case 3:
+      return truncated_cone(between(1.0, 10.0) * mm, between(3.0, 12.0) * mm, between(10.0, 40.0) * mm);
+    case 4:
+      return grapple_shaft({});
+    case 5:
+      return std::make_shared<Capsule>(0.0, between(10.0, 60.0) * mm);
+    default:
+      return std::make_shared<MeshShape>(
+          test::cuboid(between(5.0, 40.0) * mm, between(5.0, 40.0) * mm, 10.0 * mm));
   }
-  if (kind == 2) {
-    const double radius = size(2.0, 10.0), length = size(10.0, 60.0);
-    return finite_cylinder(radius, length);
-  }
-  if (kind == 3) {
-    const double first = size(1.0, 10.0), second = size(3.0, 12.0), length = size(10.0, 40.0);
-    return truncated_cone(first, second, length);
-  }
-  if (kind == 4) return grapple_shaft({});
-  if (kind == 5) return std::make_shared<Capsule>(0.0, size(10.0, 60.0));
-  const double width = size(5.0, 40.0), height = size(5.0, 40.0);
-  return std::make_shared<MeshShape>(test::cuboid(width, height, 10.0 * mm));
 }
 
 TEST(SlowRandomMotions, EndWithTheirBalancesClosed) {
   std::mt19937 random(2);
   const auto between = [&random](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
-  };
-  // Draws of a list's members, in their order with every compiler.
-  const auto vector = [&](double x, double y, double z) -> Vector3d {
-    Vector3d v;
-    for (const auto& [k, most] : {std::pair{0, x}, {1, y}, {2, z}}) v[k] = between(-most, most);
-    return v;
   };
   const auto one_of = [&](const std::vector<double>& list) {
     return list[static_cast<std::size_t>(between(0.0, 0.999) * static_cast<double>(list.size()))];
@@ -82,12 +75,11 @@ TEST(SlowRandomMotions, EndWithTheirBalancesClosed) {
     body.properties.mass = one_of({0.2, 2.0, 9.0});
     body.properties.inertia = Vector3d(0.01, 0.012, 0.009).asDiagonal();
     const double speed = one_of({0.02, 0.1, 0.5});
-    body.start.position = mm * (Vector3d(87.5, -80.0, 0.0) + vector(47.5, 10.0, 5.0));
-    const double turn = between(-3.0, 3.0);
-    body.start.orientation =
-        Eigen::AngleAxisd(turn, (Vector3d(0.0, 0.0, 1.0) + vector(1.0, 1.0, 0.0)).normalized());
-    body.start.velocity = speed * (Vector3d(0.0, 1.0, 0.0) + vector(0.3, 0.0, 0.1));
-    body.start.spin = 5.0 * speed * vector(1.0, 1.0, 1.0);
+    body.start.position = Vector3d(between(40.0, 135.0), -between(70.0, 90.0), between(-5.0, 5.0)) * mm;
+    body.start.orientation = Eigen::Quaterniond(
+        Eigen::AngleAxisd(between(-3.0, 3.0), Vector3d(between(-1, 1), between(-1, 1), 1.0).normalized()));
+    body.start.velocity = speed * Vector3d(between(-0.3, 0.3), 1.0, between(-0.1, 0.1));
+    body.start.spin = 5.0 * speed * Vector3d(between(-1, 1), between(-1, 1), between(-1, 1));
     motion.bodies.push_back(body);
     MotionContact contact;
     contact.shape = random_shape(k % 7, between);
