@@ -6,6 +6,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace snare::wire {
@@ -23,6 +24,16 @@ void SpatialRod::set_mounts(const SpatialEnd& left, const SpatialEnd& right) {
   properties_.right = right;
 }
 
+namespace {
+
+/// Frame of a mount that holds the end's direction; none of another.
+std::optional<Frame> mount_frame(const SpatialEnd& end) {
+  if (!end.orients()) return std::nullopt;
+  return Frame{end.direction, end.director};
+}
+
+}  // namespace
+
 SpatialState SpatialRod::make_state(const Eigen::VectorXd& q, const Controls& controls) const {
   assert(q.size() == unknowns());
   const int n = mesh_.edges();
@@ -32,12 +43,8 @@ SpatialState SpatialRod::make_state(const Eigen::VectorXd& q, const Controls& co
   state.frames.resize(base::at(n));
   state.reference_twist.assign(base::at(n + 1), 0.0);
   const auto tangent = [&](int e) { return Vector3d(vertex(state, e + 1) - vertex(state, e)).normalized(); };
-  const auto mounted = [](const SpatialEnd& end) -> std::optional<Frame> {
-    if (!end.orients()) return std::nullopt;
-    return Frame{end.direction, end.director};
-  };
-  state.left_mount = mounted(properties_.left);
-  state.right_mount = mounted(properties_.right);
+  state.left_mount = mount_frame(properties_.left);
+  state.right_mount = mount_frame(properties_.right);
   Frame frame = state.left_mount.value_or(Frame{tangent(0), any_normal(tangent(0))});
   if (!state.left_mount && state.right_mount) {  // untwisted from the end that is held
     frame = *state.right_mount;
@@ -70,12 +77,8 @@ void SpatialRod::adopt_mounts(SpatialState& state) const {
   };
   place(properties_.left, row_of(End::left));
   place(properties_.right, row_of(End::right));
-  const auto orient = [](const SpatialEnd& end, std::optional<Frame>& frame) {
-    frame.reset();
-    if (end.orients()) frame = Frame{end.direction, end.director};
-  };
-  orient(properties_.left, state.left_mount);
-  orient(properties_.right, state.right_mount);
+  state.left_mount = mount_frame(properties_.left);
+  state.right_mount = mount_frame(properties_.right);
   accept(state, q);
 }
 

@@ -37,7 +37,7 @@ struct Identifiability {
 
 /// Decides about a direction d (in the units of the Jacobian's columns) that the errors of the derivatives
 /// leave in doubt: whether chi2 stays where it is along it, as stays_along() has it for a step that should
-/// change the residual by `doubtful_change`; none where that cannot be told.
+/// change the residual by `doubtful_change`; none where the check is not conclusive.
 using NullCheck = std::function<std::optional<bool>(const Eigen::VectorXd& direction)>;
 
 /// Change of the residual [-] that a direction in doubt promises with the step of its check, five standard

@@ -272,7 +272,7 @@ double rise_of(const RecordData& data, const RecordFit& optimum, double chi2) {
 
 // Rises of chi2 that end the way through a valley: what chance does not do, and too far up its side.
 constexpr double clear_rise = 2.0, steep_rise = 5.0;
-constexpr double can_tell = 3.0;  // change of the residual: a rise by its square is told from none
+constexpr double conclusive_change = 3.0;  // of the residual: its square is a clear rise
 
 /// Where a number is held at a share of its way, the others refitted.
 struct ValleyPoint {
@@ -283,8 +283,8 @@ struct ValleyPoint {
 
   [[nodiscard]] bool rises() const { return rise >= clear_rise; }
   [[nodiscard]] bool ends() const { return share >= 1.0 || rises(); }
-  /// Whether it is known that chi2 rises here, or that it does not though the derivatives say so.
-  [[nodiscard]] bool tells() const { return rises() || promised >= can_tell; }
+  /// Whether chi2 rises here, or does not although the derivatives promise a clear rise.
+  [[nodiscard]] bool is_conclusive() const { return rises() || promised >= conclusive_change; }
 };
 
 /// The move to `share`, the others on the polynomial through the last points, of which there may be three.
@@ -335,7 +335,7 @@ ValleyPoint follow_valley(const RecordModel& model, const RecordData& data, cons
 }
 
 /// Whether chi2 stays where it is along a direction about whose derivatives there is doubt; none where the
-/// way ends on both sides before that can be told.
+/// way ends on both sides before that is clear.
 std::optional<bool> stays_along(const RecordModel& model, const RecordData& data, const RecordFit& optimum,
                                 const Eigen::VectorXd& direction) {
   Eigen::Index held = 0;  // what moves most
@@ -343,7 +343,7 @@ std::optional<bool> stays_along(const RecordModel& model, const RecordData& data
   for (const double side : {1.0, -1.0}) {
     const ValleyPoint end =
         follow_valley(model, data, optimum, direction, held, side, std::numeric_limits<double>::infinity());
-    if (end.tells()) return !end.rises();
+    if (end.is_conclusive()) return !end.rises();
   }
   return std::nullopt;
 }
@@ -356,8 +356,8 @@ bool go_together(const RecordFit& optimum, const Eigen::VectorXd& direction) {
 }
 
 /// Follows the valley to one side of the answer of number k, unless chi2 rises half the way along a straight
-/// line as in a linear model; `in_any_case`, though it does. None where the interval stands, or where the way
-/// ends, at a bound or where nothing can be simulated, before that could be told.
+/// line as in a linear model; with `in_any_case` also then. None where the interval stands, or where the way
+/// ends too early, at a bound or where nothing can be simulated.
 std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordData& data,
                                          const RecordFit& optimum, const Eigen::VectorXd& direction,
                                          Eigen::Index k, double side, bool in_any_case) {
@@ -369,7 +369,7 @@ std::optional<ValleyPoint> valley_beside(const RecordModel& model, const RecordD
     if (share > 0.5 && share < 2.0) return std::nullopt;
   }
   const ValleyPoint end = follow_valley(model, data, optimum, direction, k, side, steep_rise);
-  if (model.stopped() || !end.tells()) return std::nullopt;
+  if (model.stopped() || !end.is_conclusive()) return std::nullopt;
   return end;
 }
 
@@ -395,7 +395,7 @@ void add_valley(const RecordData& data, const ValleyPoint& valley, Eigen::Index 
 
 /// Compares the interval of every number with the rise of chi2 to both sides of the answer. Where it does not
 /// rise the number becomes a null direction: where the readings depend on a number by its square, as on the
-/// height of a probe above a plane of symmetry, every answer beside the plane has a derivative and the plane
+/// height of a probe above a plane of symmetry, every answer off the plane has a derivative and the plane
 /// has none. Where the interval misses the profile of chi2, by the wider of its sides, by a factor of 2 it
 /// becomes the profile's: the factors of the standard errors come back. On a bound chi2 has a slope, and
 /// nothing is asked.                                                                  theory.md (I.32)
@@ -409,7 +409,8 @@ Eigen::VectorXd test_intervals(const RecordModel& model, const RecordData& data,
     const bool on_bound = number.value <= number.number.lower || number.value >= number.number.upper;
     if (!fit.rank.is_known(static_cast<std::size_t>(k)) || !(variance > 0.0) || on_bound) continue;
     const Eigen::VectorXd direction = fit.rank.covariance.col(k) / variance;
-    // A valley that the derivatives of such numbers miss by a little rises, too; one side tells.
+    // Where numbers nearly make up for each other a straight line leaves a curved valley, and chi2 rises
+    // along it in any case. One side that agrees with the interval is enough.
     bool in_any_case = go_together(fit, direction);
     double widest = 0.0;
     for (const double side : {1.0, -1.0}) {

@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-BLOCK = 10  # files between two looks at what was found
+BLOCK = 10  # files a run of relations.py, after which a broken relation ends the search
 HERE = pathlib.Path(__file__).resolve().parent
 
 
@@ -37,7 +37,7 @@ FAULTS = [
           "return {force, p.axial_stiffness, 0.5 * force * strain}", "return {force, p.axial_stiffness, 0.6 * force * strain}", ("push",)),
     Fault("wire", "the axial damping of a moving wire gives no force", "wire/motion/rod_forces.cpp",
           "      tension += viscous;\n", "", ("motion",)),
-    Fault("wire", "kinetic energy without the share of inertia", "wire/motion/rod_part.cpp",
+    Fault("wire", "momentum without the share of inertia of a quasi-static wire", "wire/motion/rod_part.cpp",
           "  result.momentum *= share;\n", "", ("motion",)),
     Fault("coupling/statics", "a sign in the transverse force", "coupling/statics/planar_push.cpp",
           "pusher.motion.y() * force.x() - pusher.motion.x() * force.y()", "pusher.motion.y() * force.x() + pusher.motion.x() * force.y()",
@@ -72,9 +72,9 @@ FAULTS = [
           "to_other * (f.linear - other.linear - other.angular.cross(apart))", "to_other * (f.linear - other.linear)", ("bodies", "arms")),
     Fault("scenario", "a sensor of tension reads another wire", "scenario/sensors.cpp",
           "coupling::end_tension(s, wire)", "coupling::end_tension(s, 0)", ("motion", "snares")),
-    Fault("identification", "the noise of a record's channel is read by another scale", "identification/records/record_data.cpp",
+    Fault("identification", "readings of a record by another scale than the predictions", "identification/records/record_data.cpp",
           "values.head(piece.size) / piece.scale -\n", "values.head(piece.size) / (1.1 * piece.scale) -\n", ("records",)),
-    Fault("identification", "the second reading of a series is left out", "identification/fitting/prediction.cpp",
+    Fault("identification", "the force of the second reading by a factor", "identification/fitting/prediction.cpp",
           "    result.wire.force[i] += weight * p->force;", "    result.wire.force[i] += (i == 1 ? 0.9 : 1.0) * weight * p->force;", ("fit",)),
     Fault("study", "rows of a grid are numbered by its first key", "study/design.cpp",
           "for (std::size_t j = n; j-- > 0;) {\n        const std::uint64_t levels", "for (std::size_t j = 0; j < n; ++j) {\n        const std::uint64_t levels",

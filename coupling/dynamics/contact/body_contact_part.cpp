@@ -246,9 +246,9 @@ void BodyContactPart::jacobian(const numerics::DaePoint& at, double c, std::vect
   const numerics::PatternValues into(slots(), values);
   std::vector<bool> inside(coupled_.size(), false);
   for (const auto& [index, field] : points_inside(motions<2>(frames(), at.y))) inside[index] = true;
+  const double idle = forgetting_rate(idle_load, contact_.friction.bristle_time);
   for (std::size_t k = 0; k < coupled_.size(); ++k) {
-    for (int a = bristle_of(k); a < bristle_of(k) + 3; ++a)
-      into.add(a, a, inside[k] ? c : c + forgetting_rate(idle_load, contact_.friction.bristle_time));
+    for (int a = bristle_of(k); a < bristle_of(k) + 3; ++a) into.add(a, a, inside[k] ? c : c + idle);
   }
 }
 

@@ -15,12 +15,12 @@ struct BristlesBeside {
   std::array<double, 2> shape_functions{};
 };
 
-/// What a bristle is pressed by where nothing presses, W [N]: negligible.
+/// A negligible load W [N] on every bristle, which keeps its equation regular without contact.
 inline constexpr double idle_load = 1e-6;
 
 /// The rate 1/t at which a bristle forgets its deflection under a load P that includes the idle one [N]:
 ///   dz/dt = ... - z/t,   1/t = 10 (W/P)^3/tau
-/// Nothing of one touch is left for the next one, and what is pressed does not creep.         theory.md (M.9)
+/// A bristle is straight at every new touch, and a loaded one does not creep.                 theory.md (M.9)
 /// time: tau [s], > 0. [1/s]
 template <class S>
 [[nodiscard]] S forgetting_rate(const S& load, double time) {
