@@ -215,51 +215,51 @@ void add_export(CLI::App& app, snare::app::ExportOptions& asked, CommonOptions& 
       "50,100,0");
 }
 
-int run(int argc, char** argv) {
-  CLI::App app{"snare: the mechanics of loose wires under a pin"};
-  app.require_subcommand(1);
-  app.set_version_flag("--version", "snare " + snare::app::version());
+/// A verb of the list with what stands behind it on the command line.
+struct Parsed {
+  CLI::App* command = nullptr;
+  CommonOptions options;
+  std::filesystem::path file;
+};
 
-  struct Parsed {
-    CLI::App* command = nullptr;
-    CommonOptions options;
-    std::filesystem::path file;
-  };
-  std::vector<Parsed> parsed(std::size(verbs));  // CLI11 keeps pointers into it
-  for (std::size_t k = 0; k < std::size(verbs); ++k) {
-    const Verb& verb = verbs[k];
-    Parsed& p = parsed[k];
-    p.command = app.add_subcommand(verb.name, verb.what);
-    if (verb.argument != nullptr)
-      p.command->add_option(verb.argument, p.file, verb.meaning)->required(verb.needed);
-    add_common(*p.command, p.options, std::string("out/") + verb.name);
-    if (verb.run == snare::app::run_sweep)
-      p.command->add_option("--case", p.options.only_case, "run this case alone, as its verb would")
-          ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000'000}, "CASE from 1 to 1e12"));
-    if (verb.run == snare::app::run_benchmark) {
-      p.command->add_option("--case", p.options.only_named, "this case alone, by its name");
-      p.command->add_option("--against", p.options.against,
-                            "CSV file of a history that is scored on the case, too");
-      p.command->add_flag("--archive", p.options.archive,
-                          "make the archived histories anew, beside the file");
-    }
-    p.command->footer(std::string("Example: ") + verb.example);
+void add_verb(CLI::App& app, const Verb& verb, Parsed& parsed) {
+  parsed.command = app.add_subcommand(verb.name, verb.what);
+  if (verb.argument != nullptr)
+    parsed.command->add_option(verb.argument, parsed.file, verb.meaning)->required(verb.needed);
+  CommonOptions& options = parsed.options;
+  add_common(*parsed.command, options, std::string("out/") + verb.name);
+  if (verb.run == snare::app::run_sweep)
+    parsed.command->add_option("--case", options.only_case, "run this case alone, as its verb would")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000'000}, "CASE from 1 to 1e12"));
+  if (verb.run == snare::app::run_benchmark) {
+    parsed.command->add_option("--case", options.only_named, "this case alone, by its name");
+    parsed.command->add_option("--against", options.against,
+                               "CSV file of a history that is scored on the case, too");
+    parsed.command->add_flag("--archive", options.archive,
+                             "make the archived histories anew, beside the file");
   }
+  parsed.command->footer(std::string("Example: ") + verb.example);
+}
 
-  CommonOptions arm_options;
+/// Everything that the command line may ask for.
+struct Asked {
+  std::vector<Parsed> parsed = std::vector<Parsed>(std::size(verbs));  // CLI11 keeps pointers into it
+  CommonOptions arm_options, new_options, export_options;
   std::filesystem::path arm_file;
-  std::string arm_pose;
-  CLI::App* arm_show = add_arm(app, arm_file, arm_pose, arm_options);
-
-  CommonOptions new_options;
-  std::string new_what;
-  add_new(app, new_what, new_options);
-
-  CommonOptions export_options;
+  std::string arm_pose, new_what;
+  CLI::App* arm_show = nullptr;
   snare::app::ExportOptions exported;
-  add_export(app, exported, export_options);
+};
 
-  snare::app::catch_interrupts(snare::base::release_result_folders);
+void add_everything(CLI::App& app, Asked& asked) {
+  for (std::size_t k = 0; k < std::size(verbs); ++k) add_verb(app, verbs[k], asked.parsed[k]);
+  asked.arm_show = add_arm(app, asked.arm_file, asked.arm_pose, asked.arm_options);
+  add_new(app, asked.new_what, asked.new_options);
+  add_export(app, asked.exported, asked.export_options);
+}
+
+/// Parses the command line; a status where that ends the program.
+std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   try {
     check_words(app, argc, argv);
     app.parse(argc, argv);
@@ -273,30 +273,46 @@ int run(int argc, char** argv) {
     snare::app::print(out.str());
     return code == 0 ? 0 : static_cast<int>(ExitStatus::wrong_input);
   }
+  return std::nullopt;
+}
 
-  ExitStatus status = ExitStatus::failure;
-  if (arm_show->parsed()) {
-    status = guarded(arm_options, "snare-arm-show/1", [&](Console& c) {
-      return snare::app::run_arm_show(arm_file, arm_pose, arm_options, c);
+/// Runs the verb that was asked for.
+ExitStatus run_asked(const CLI::App& app, Asked& asked) {
+  if (asked.arm_show->parsed())
+    return guarded(asked.arm_options, "snare-arm-show/1", [&](Console& c) {
+      return snare::app::run_arm_show(asked.arm_file, asked.arm_pose, asked.arm_options, c);
+    });
+  if (app.get_subcommand("new")->parsed()) {
+    asked.new_options.command = "snare new " + snare::base::shell_word(asked.new_what);
+    return guarded(asked.new_options, "",
+                   [&](Console& c) { return snare::app::run_new(asked.new_what, asked.new_options, c); });
+  }
+  if (app.get_subcommand("export")->parsed()) {
+    asked.export_options.command = "snare export " + snare::base::shell_word(asked.exported.law.string());
+    return guarded(asked.export_options, "", [&](Console& c) {
+      return snare::app::run_export(asked.exported, asked.export_options, c);
     });
   }
-  new_options.command = "snare new " + snare::base::shell_word(new_what);
-  if (app.get_subcommand("new")->parsed())
-    status =
-        guarded(new_options, "", [&](Console& c) { return snare::app::run_new(new_what, new_options, c); });
-  export_options.command = "snare export " + snare::base::shell_word(exported.law.string());
-  if (app.get_subcommand("export")->parsed())
-    status = guarded(export_options, "",
-                     [&](Console& c) { return snare::app::run_export(exported, export_options, c); });
   for (std::size_t k = 0; k < std::size(verbs); ++k) {
-    Parsed& p = parsed[k];
+    Parsed& p = asked.parsed[k];
+    if (!p.command->parsed()) continue;
     p.options.command = std::string("snare ") + verbs[k].name +
                         (p.file.empty() ? "" : " " + snare::base::shell_word(p.file.string()));
-    if (p.command->parsed())
-      status =
-          guarded(p.options, verbs[k].schema, [&](Console& c) { return verbs[k].run(p.file, p.options, c); });
+    return guarded(p.options, verbs[k].schema,
+                   [&](Console& c) { return verbs[k].run(p.file, p.options, c); });
   }
-  return static_cast<int>(status);
+  return ExitStatus::failure;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"snare: the mechanics of loose wires under a pin"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "snare " + snare::app::version());
+  Asked asked;
+  add_everything(app, asked);
+  snare::app::catch_interrupts(snare::base::release_result_folders);
+  if (const std::optional<int> status = parse(app, argc, argv)) return *status;
+  return static_cast<int>(run_asked(app, asked));
 }
 
 }  // namespace

@@ -216,7 +216,8 @@ std::optional<RefittedLeader> leading_refitted(Experiment experiment, const nloh
     start.push_back(
         {&identification::parameters().at("series[" + s.name + "].reading.displacement_offset_mm"), 0.0});
   const auto fit = refitted(experiment, start, start.size(), identification::published_replicates);
-  RefittedLeader result{leading, fit.p, {}};
+  RefittedLeader result{leading, hypothesis->meaning, (*entry)["readings"], fit.p,
+                        {},      experiment,          fit.settings};
   for (const identification::Setting& s : fit.settings) result.values[s.parameter->key] = model.shown(s);
   return result;
 }
@@ -299,13 +300,14 @@ std::string command_line(const CommonOptions& options) {
   return line;
 }
 
-/// Writes traced.toml; without a tracing takes away that of an earlier run, which is not this result.
+/// Writes traced.toml; where nothing was traced takes away that of an earlier run, which is not this result.
 void write_traced_wire(const CommonOptions& options, const Reproduction& result) {
   const std::filesystem::path file = options.out / traced_wire_file;
-  if (result.trace && result.trace->report.usable())
-    base::write_text(file, traced_wire_toml(result, command_line(options)));
-  else
+  const std::string text = traced_wire_toml(result, command_line(options));
+  if (text.empty())
     std::filesystem::remove(file);
+  else
+    base::write_text(file, text);
 }
 
 void write_files(const CommonOptions& options, Reproduction& result) {
@@ -356,13 +358,108 @@ class Finished {
   std::optional<KeepWhenInterrupted> keeping_;
 };
 
+/// The steps of a reproduction, each of which is kept when a later one is interrupted.
+class Reproducing {
+ public:
+  Reproducing(Experiment experiment, const CommonOptions& options, Console& console)
+      : console_(console), options_(options), finished_(options) {
+    result_.experiment = std::move(experiment);
+    result_.assumptions = assumptions(result_.experiment);
+    result_.models.push_back(declared_model(result_.experiment, console_));
+    finished_.reached(result_);
+  }
+
+  /// One wire of the declared kind, its numbers fitted to all positions together.
+  void fit() {
+    const ModelWords words{"best_fit", "best fit of the declared kind",
+                           "The same kind of model with the listed numbers fitted to all positions together"};
+    const Trace fitted = fit_of(result_.experiment, {}, progress());
+    if (!fitted.report.usable()) {
+      if (!interrupted()) complain(fmt::format("{}: {}", words.label, fitted.report.message));
+      return;
+    }
+    result_.models.push_back(model_of(result_.experiment, fitted, words, console_));
+    if (fitted.base_tests.published) {
+      result_.summary = fitted.base_tests.published;
+      result_.by_digits = by_digits(result_.experiment, fitted);
+    }
+    finished_.reached(result_);
+  }
+
+  /// The effect that the fitted model lacks.
+  void trace() {
+    identification::TraceOptions tracing;
+    tracing.progress = progress();
+    Trace trace = identification::trace(result_.experiment, tracing);
+    if (!trace.report.usable()) return;
+    const ModelWords words{"traced", "traced model",
+                           "The fitted model with the effect that the tracing adds"};
+    if (!trace.selected.empty())
+      result_.models.push_back(model_of(result_.experiment, trace, words, console_));
+    result_.trace = std::move(trace);
+    finished_.reached(result_);
+  }
+
+  /// The ways in which published fits may have come about.
+  void weigh() {
+    result_.map = published_map_of(result_.experiment, progress(), console_);
+    if (result_.map) {
+      say(published_verdict(*result_.map).headline);
+      result_.leader = leading_refitted(result_.experiment, *result_.map);
+    }
+    finished_.reached(result_);
+  }
+
+  void say_distances() { say(fits_in_words(result_)); }
+
+  ExitStatus write() {
+    console_.end_progress();
+    begin_writing();
+    result_.interrupted = interrupted();
+    for (const ReproducedModel& model : result_.models) {
+      for (std::size_t k = 0; k < result_.experiment.series.size(); ++k) {
+        const numerics::SolveReport& report = model.predictions[k].curve.curve.report;
+        if (!report.usable())
+          complain(fmt::format("{}, series {}: {}", model.label, result_.experiment.series[k].name,
+                               report.message));
+      }
+    }
+    write_files(options_, result_);
+    for (const std::string& warning : result_.warnings) console_.warn(warning);
+    if (result_.interrupted) complain(partial_words(result_));
+    const bool traced = std::filesystem::exists(options_.out / traced_wire_file);
+    say(fmt::format("wrote {0}/curves.csv, {0}/reproduce.json, {0}/report.html{1}", options_.out.string(),
+                    traced ? fmt::format(", {}/{}", options_.out.string(), traced_wire_file) : ""));
+    return status_;
+  }
+
+ private:
+  [[nodiscard]] Progress progress() {
+    return [this](const std::string& stage) {
+      console_.progress(stage);
+      return !interrupted();
+    };
+  }
+  void say(const std::string& text) {
+    if (!options_.json) console_.say(text);
+  }
+  void complain(const std::string& text) {
+    console_.complain(text);
+    status_ = ExitStatus::solver_stopped;
+  }
+
+  Console& console_;
+  const CommonOptions& options_;
+  Finished finished_;
+  Reproduction result_;
+  ExitStatus status_ = ExitStatus::done;
+};
+
 }  // namespace
 
 ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions& options, Console& console) {
-  Reproduction result;
-  result.experiment = open_experiment(
+  Experiment experiment = open_experiment(
       file.empty() ? data_directory() / "experiments" / "published_static.toml" : file, options);
-  const Experiment& experiment = result.experiment;
   for (const Series& series : experiment.series) {
     if (identification::measured_force(series).empty()) {
       throw base::InputError({experiment.file.string(), 0, "series[" + series.name + "]", "",
@@ -370,78 +467,12 @@ ExitStatus run_reproduce(const std::filesystem::path& file, const CommonOptions&
     }
   }
   const ResultFolder folder(options, {"curves.csv", "reproduce.json", "report.html", traced_wire_file});
-  Finished finished(options);
-  result.assumptions = assumptions(experiment);
-  result.models.push_back(declared_model(experiment, console));
-  finished.reached(result);
-
-  ExitStatus status = ExitStatus::done;
-  const auto say = [&](const std::string& text) {
-    if (!options.json) console.say(text);
-  };
-  const Progress progress = [&console](const std::string& stage) {
-    console.progress(stage);
-    return !interrupted();
-  };
-  if (!interrupted()) {
-    const ModelWords words{"best_fit", "best fit of the declared kind",
-                           "The same kind of model with the listed numbers fitted to all positions together"};
-    const Trace fitted = fit_of(experiment, {}, progress);
-    if (fitted.report.usable()) {
-      result.models.push_back(model_of(experiment, fitted, words, console));
-      if (fitted.base_tests.published) {
-        result.summary = fitted.base_tests.published;
-        result.by_digits = by_digits(experiment, fitted);
-      }
-      finished.reached(result);
-    } else if (!interrupted()) {
-      console.complain(fmt::format("{}: {}", words.label, fitted.report.message));
-      status = ExitStatus::solver_stopped;
-    }
-  }
-  if (!interrupted()) {
-    identification::TraceOptions tracing;
-    tracing.progress = progress;
-    Trace trace = identification::trace(experiment, tracing);
-    if (trace.report.usable()) {
-      const ModelWords words{"traced", "traced model",
-                             "The fitted model with the effect that the tracing adds"};
-      if (!trace.selected.empty()) result.models.push_back(model_of(experiment, trace, words, console));
-      result.trace = std::move(trace);
-      finished.reached(result);
-    }
-  }
-  say(fits_in_words(result));
-  if (!interrupted()) {
-    result.map = published_map_of(experiment, progress, console);
-    if (result.map) {
-      say(published_verdict(*result.map).headline);
-      result.leader = leading_refitted(experiment, *result.map);
-    }
-    finished.reached(result);
-  }
-  console.end_progress();
-  begin_writing();
-  result.interrupted = interrupted();
-  for (const ReproducedModel& model : result.models) {
-    for (std::size_t k = 0; k < experiment.series.size(); ++k) {
-      const numerics::SolveReport& report = model.predictions[k].curve.curve.report;
-      if (report.usable()) continue;
-      console.complain(
-          fmt::format("{}, series {}: {}", model.label, experiment.series[k].name, report.message));
-      status = ExitStatus::solver_stopped;
-    }
-  }
-
-  write_files(options, result);
-  for (const std::string& warning : result.warnings) console.warn(warning);
-  if (result.interrupted) {
-    console.complain(partial_words(result));
-    status = ExitStatus::solver_stopped;
-  }
-  say(fmt::format("wrote {0}/curves.csv, {0}/reproduce.json, {0}/report.html{1}", options.out.string(),
-                  result.trace ? fmt::format(", {}/{}", options.out.string(), traced_wire_file) : ""));
-  return status;
+  Reproducing steps(std::move(experiment), options, console);
+  if (!interrupted()) steps.fit();
+  if (!interrupted()) steps.trace();
+  steps.say_distances();
+  if (!interrupted()) steps.weigh();
+  return steps.write();
 }
 
 }  // namespace snare::app

@@ -4,6 +4,7 @@
 #include "coupling/statics/spatial_push.hpp"
 #include "identification/fitting/model.hpp"
 #include "results/in_mm.hpp"
+#include "results/published_map.hpp"
 #include "results/trace_findings.hpp"
 #include "scenario/push_writer.hpp"
 
@@ -11,7 +12,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -35,19 +35,18 @@ std::string quoted(const std::string& text) {
   return nlohmann::json(base::one_line(text)).dump();
 }
 
-/// The kind of the verdict in words: "not explained".
-std::string kind_of(const Trace& trace) {
-  std::string kind = identification::to_string(trace.kind);
+/// A verdict in words: "not explained".
+std::string with_spaces(std::string kind) {
   std::ranges::replace(kind, '_', ' ');
   return kind;
 }
 
-/// A fitted number on a line: "wire.length_mm = 175.6 +- 0.04 mm (declared: 180)".
-std::string line_of(const FittedNumber& n) {
-  std::string line = fmt::format("  {} = {:.6g}", n.key, n.value);
-  line += n.standard_error ? fmt::format(" +- {:.2g}", *n.standard_error) : std::string(" (not determined)");
-  if (!n.unit.empty() && n.unit != "1") line += " " + n.unit;
-  if (std::isfinite(n.declared)) line += fmt::format(" (declared: {:.6g})", n.declared);
+/// A fitted number on a line: "wire.length_mm = 175.6 +- 0.04 mm (declared: 180)". error: as it stands there.
+std::string line_of(const std::string& key, double value, const std::string& error, const std::string& unit,
+                    double declared) {
+  std::string line = fmt::format("  {} = {:.6g}{}", key, value, error);
+  if (!unit.empty() && unit != "1") line += " " + unit;
+  if (std::isfinite(declared)) line += fmt::format(" (declared: {:.6g})", declared);
   return line;
 }
 
@@ -90,38 +89,84 @@ std::string asked(const Model::Applied& applied) {
   return text;
 }
 
+/// A test with numbers fitted to it, and what is said of them.
+struct Bench {
+  const Experiment& experiment;
+  const std::vector<identification::Setting>& settings;
+  std::string of;    ///< "the tracing": what has it
+  std::string kind;  ///< of the verdict, in words
+  bool accepted = false;
+  std::vector<std::string> remarks = {}, numbers = {};
+};
+
+/// The leading explanation of published fits, at its ranges and number of readings.
+Bench leading_bench(const Reproduction& result) {
+  const RefittedLeader& leader = *result.leader;
+  const results::PublishedVerdict verdict = results::published_verdict(*result.map);
+  const Model model(leader.experiment.series, leader.experiment.solver);
+  Bench bench{leader.experiment, leader.settings, "the leading explanation",
+              with_spaces(results::to_string(verdict.answer))};
+  bench.accepted = verdict.answer == results::PublishedAnswer::explained ||
+                   verdict.answer == results::PublishedAnswer::most_likely;
+  bench.remarks = {
+      verdict.headline,
+      fmt::format("Here {}, fitted to {} readings a series over the range below, of which the paper "
+                  "gives neither (p = {:.2f}).",
+                  leader.meaning, leader.readings, leader.p)};
+  for (const identification::Setting& s : leader.settings) {
+    const identification::Parameter& p = *s.parameter;
+    bench.numbers.push_back(line_of(p.key, model.shown(s), "", p.unit, p.shown(model.declared(p), 0.0)));
+  }
+  return bench;
+}
+
+/// The model that the tracing ends with.
+Bench traced_bench(const Reproduction& result) {
+  const Trace& trace = *result.trace;
+  Bench bench{result.experiment, trace.final_settings, "the tracing",
+              with_spaces(identification::to_string(trace.kind))};
+  bench.accepted = trace.explained || trace.kind == identification::VerdictKind::partly_explained;
+  bench.remarks = {"Verdict: " + bench.kind + ". " + results::verdict(trace)};
+  if (trace.interrupted)
+    bench.remarks.emplace_back("The tracing was interrupted: this is what it had found.");
+  std::string effects;
+  for (const std::string& effect : trace.selected) effects += (effects.empty() ? "" : ", ") + effect;
+  if (!effects.empty()) bench.remarks.push_back("Effects that the tracing added: " + effects + ".");
+  for (const FittedNumber& n : trace.final.numbers)
+    bench.numbers.push_back(line_of(
+        n.key, n.value, n.standard_error ? fmt::format(" +- {:.2g}", *n.standard_error) : " (not determined)",
+        n.unit, n.declared));
+  return bench;
+}
+
+std::string text_of(const Bench& bench, const std::string& command) {
+  const Experiment& experiment = bench.experiment;
+  const Model::Applied applied = Model(experiment.series, experiment.solver).apply(bench.settings);
+  const coupling::PushProblem& test = applied.series.front().test;
+  std::string text = comment("Wire, mounts and pusher by " + bench.of + " of \"" + experiment.title +
+                             "\", written by `" + command + "`.");
+  if (!experiment.file.empty()) text += comment("Declared in " + experiment.file.filename().string() + ".");
+  for (const std::string& remark : bench.remarks) text += comment(remark);
+  if (!bench.accepted)
+    text +=
+        comment("No model was accepted: do not rely on these numbers. They are the nearest that were found.");
+  text += comment("Fitted, with the standard errors that are known; all else is as declared:");
+  for (const std::string& number : bench.numbers) text += comment(number);
+  if (coupling::needs_space(test))
+    text += comment("`snare distil` refuses this file: the push leaves the plane of the wire.");
+  text += fmt::format("\nschema = \"snare-wire/1\"\ntitle = {}\nsource = {}\n\n",
+                      quoted("traced wire of \"" + experiment.title + "\": " + bench.kind +
+                             (bench.accepted ? "" : ", do not rely on it")),
+                      quoted(command + ", on: " + experiment.source));
+  return text + scenario::push_tables_text(test) + asked(applied);
+}
+
 }  // namespace
 
 std::string traced_wire_toml(const Reproduction& result, const std::string& command) {
-  assert(result.trace && result.trace->report.usable());
-  const Trace& trace = *result.trace;
-  const Experiment& experiment = result.experiment;
-  const Model::Applied applied = Model(experiment.series, experiment.solver).apply(trace.final_settings);
-  const coupling::PushProblem& test = applied.series.front().test;
-  const std::string kind = kind_of(trace);
-  const bool accepted = trace.explained || trace.kind == identification::VerdictKind::partly_explained;
-
-  std::string text = comment("The wire that the tracing of \"" + experiment.title +
-                             "\" ends with, written by `" + command + "`: wire, mounts and pusher.");
-  if (!experiment.file.empty()) text += comment("Declared in " + experiment.file.filename().string() + ".");
-  text += comment("Verdict: " + kind + ". " + results::verdict(trace));
-  if (trace.interrupted) text += comment("The tracing was interrupted: this is what it had found.");
-  if (!accepted)
-    text += comment(
-        "No model was accepted: do not rely on these numbers. They are the best fit of the declared kind.");
-  std::string effects;
-  for (const std::string& effect : trace.selected) effects += (effects.empty() ? "" : ", ") + effect;
-  if (!effects.empty()) text += comment("Effects that the tracing added: " + effects + ".");
-  text += comment("Fitted, with standard errors; all else is as declared:");
-  for (const FittedNumber& number : trace.final.numbers) text += comment(line_of(number));
-  if (coupling::needs_space(test))
-    text += comment("`snare distil` refuses this file: the push leaves the plane of the wire.");
-
-  text += fmt::format("\nschema = \"snare-wire/1\"\ntitle = {}\nsource = {}\n\n",
-                      quoted("traced wire of \"" + experiment.title + "\": " + kind +
-                             (accepted ? "" : ", do not rely on it")),
-                      quoted(command + ", on: " + experiment.source));
-  return text + scenario::push_tables_text(test) + asked(applied);
+  if (result.leader) return text_of(leading_bench(result), command);
+  if (result.trace && result.trace->report.usable()) return text_of(traced_bench(result), command);
+  return {};
 }
 
 }  // namespace snare::app

@@ -67,6 +67,10 @@ const Pushes& pushes(Runs& runs) {
                                                         identification::parameters());
     reduction::WireCase wire = traced_wire(runs);
     wire.test.travel.clear();
+    for (Series& series : result.experiment.series) {
+      const double longer = wire.travel.high / series.test.travel.back();
+      for (double& d : series.test.travel) d *= longer;
+    }
     for (std::size_t k = 0; k < result.experiment.series.size(); ++k) {
       const Series& series = result.experiment.series[k];
       result.declared.push_back(pushed(series.test, runs));

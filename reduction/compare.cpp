@@ -58,15 +58,8 @@ void judge(ModelResult& result, const StaticCase& one, const std::vector<double>
   if (readings > 0) result.measured_rms = std::sqrt(apart / static_cast<double>(readings));
 }
 
-}  // namespace
-
-CaseComparison compare_static(const StaticCase& one, const DistilSettings& settings) {
-  CaseComparison result;
-  result.name = one.name;
-  result.travel = one.travel;
-  result.measured = one.measured;
-
-  // The full wire over the very travels of the case.
+/// The full wire over the very travels of the case, as the first model; false where it does not reach all.
+bool push_full_wire(const StaticCase& one, const DistilSettings& settings, CaseComparison& result) {
   coupling::PushProblem test = one.wire.test;
   test.contact_position = one.wire.law_positions.front();
   for (const double d : one.travel) {
@@ -98,36 +91,47 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
   }
   if (full.force.size() < one.travel.size()) {
     if (result.report.usable()) result.report.termination = numerics::Termination::step_too_small;
-    return result;
+    return false;
   }
-  const auto [low, high] = std::minmax_element(full.force.begin(), full.force.end());
+  const auto [low, high] = std::ranges::minmax_element(full.force);
   result.force_range = *high - *low;
   judge(full, one, full.force);
-  const std::vector<double> reference = full.force;
   result.models.push_back(std::move(full));
+  return true;
+}
 
-  CurveStore store(one.wire, settings, sampling_travel(one.wire, settings));
-  std::vector<DistilledPlace> places;
-  result.report = fit_places(store, places, {});
-  if (!result.report.usable()) return result;
-  const DistilledPlace& place = places.front();
+/// Adds models to a comparison, each judged against the full wire.
+class Comparing {
+ public:
+  Comparing(const StaticCase& one, CaseComparison& result)
+      : one_(one), result_(result), reference_(result.models.front().force) {}
 
-  const auto add = [&](const std::string& name, int parameters, const Interval& range, const auto& force) {
+  template <class Force>
+  void add(const std::string& name, int parameters, const Interval& range, const Force& force) {
     ModelResult model;
     model.model = name;
     model.parameters = parameters;
     model.range = range;
-    for (const double d : one.travel) model.force.push_back(d < 0.0 ? 0.0 : force(d));
-    judge(model, one, reference);
-    model.why = error_reason(one.travel, reference, model.force);
+    for (const double d : one_.travel) model.force.push_back(d < 0.0 ? 0.0 : force(d));
+    judge(model, one_, reference_);
+    model.why = error_reason(one_.travel, reference_, model.force);
     model.seconds = time_of(force, range.high);
-    result.models.push_back(std::move(model));
-  };
-  const auto add_spring = [&](const std::string& name, int parameters, const Interval& range,
-                              const coupling::SpringLaw& law) {
+    result_.models.push_back(std::move(model));
+  }
+  void add_law(const std::string& name, int parameters, const Interval& range,
+               const coupling::SpringLaw& law) {
     add(name, parameters, range, [&](double d) { return law.force(d); });
-  };
-  // The table's line along the travel: the knots that its size gives.
+  }
+
+ private:
+  const StaticCase& one_;
+  CaseComparison& result_;
+  std::vector<double> reference_;  // force of the full wire
+};
+
+/// The line of a table along the travel, on as many knots as the table's size gives.
+numerics::HermiteCurve table_line(const StaticCase& one, const DistilSettings& settings,
+                                  const DistilledPlace& place, CurveStore& store) {
   const std::vector<std::size_t> chosen = place_knots(
       store.travel(), {store.at({store.folded(place.position), one.wire.nominal_slack()}).loading},
       static_cast<std::size_t>(settings.points[0]));
@@ -137,17 +141,37 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
     values.push_back(place.full.value(knots.back()));
     slopes.push_back(place.full.slope(knots.back()));
   }
-  const numerics::HermiteCurve spline(knots, values, numerics::monotone_slopes(knots, values, slopes));
-  add("spline_table", 2 * static_cast<int>(knots.size()), one.wire.travel,
-      [&](double d) { return spline.value(d); });
+  return {knots, values, numerics::monotone_slopes(knots, values, slopes)};
+}
+
+}  // namespace
+
+CaseComparison compare_static(const StaticCase& one, const DistilSettings& settings) {
+  CaseComparison result;
+  result.name = one.name;
+  result.travel = one.travel;
+  result.measured = one.measured;
+  if (!push_full_wire(one, settings, result)) return result;
+
+  CurveStore store(one.wire, settings, sampling_travel(one.wire, settings));
+  std::vector<DistilledPlace> places;
+  result.report = fit_places(store, places, {});
+  if (!result.report.usable()) return result;
+  const DistilledPlace& place = places.front();
+
+  Comparing comparing(one, result);
+  const numerics::HermiteCurve spline = table_line(one, settings, place, store);
+  comparing.add("spline_table", 2 * static_cast<int>(spline.knots().size()), one.wire.travel,
+                [&](double d) { return spline.value(d); });
   if (place.load_unload) {
     const LoadUnloadLaw& law = place.load_unload->law;
     LoadUnloadState state;
-    add("load_unload", 2 * static_cast<int>(store.travel().size()) + 2, one.wire.travel,
-        [&](double d) { return law.move(state, d); });
+    comparing.add("load_unload", 2 * static_cast<int>(store.travel().size()) + 2, one.wire.travel,
+                  [&](double d) { return law.move(state, d); });
   }
   for (const FittedLaw& law : place.laws) {
-    add_spring(law.form->name(), static_cast<int>(law.values.size()), law.range, *law.form->with(law.values));
+    comparing.add_law(law.form->name(), static_cast<int>(law.values.size()), law.range,
+                      *law.form->with(law.values));
   }
   // Honda et al., Table 4: the stiffness of half a wire that they started from; it counts from where the wire
   // is taut.
@@ -155,9 +179,9 @@ CaseComparison compare_static(const StaticCase& one, const DistilSettings& setti
   const coupling::LawPlace where{t.mount.span, place.position, t.wire.length, t.wire.bending_stiffness()};
   Eigen::VectorXd published(2);
   published << honda_half_wire_stiffness * 0.5 * t.wire.length, 0.0;
-  add_spring("stretched_wire_published", 1, one.wire.travel,
-             *coupling::stretched_wire_law(where)->with(published));
-  for (const GivenLaw& law : one.given) add(law.name, law.parameters, law.range, law.force);
+  comparing.add_law("stretched_wire_published", 1, one.wire.travel,
+                    *coupling::stretched_wire_law(where)->with(published));
+  for (const GivenLaw& law : one.given) comparing.add(law.name, law.parameters, law.range, law.force);
   return result;
 }
 

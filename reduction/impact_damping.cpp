@@ -7,8 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace snare::reduction {
 
@@ -92,13 +95,36 @@ double damping_of_restitution(const numerics::HermiteCurve& law, double restitut
 
 namespace {
 
+/// Gives the ends of a wire in motion the mounts of a push.
+void set_mounts(const wire::MountSpecification& mount, wire::SpatialRodProperties& rod) {
+  for (const wire::End which : wire::ends) {
+    wire::SpatialEnd& end = rod.end(which);
+    end.kind = mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp
+                                                      : wire::SpatialEnd::Kind::twisting_pin;
+    end.rotational_stiffness = mount.rotational_stiffness_of(index_of(which));
+    end.translational_stiffness = mount.translational_stiffness_of(index_of(which));
+  }
+}
+
+/// Springs along the chord at the ends of the only wire become mounts of the motion.
+void add_mounts(coupling::Motion& motion) {
+  coupling::MotionWire& held = motion.wires.front();
+  for (const wire::End which : wire::ends) {
+    coupling::MotionMount mount;
+    mount.give.stiffness = std::exchange(held.rod.properties.end(which).translational_stiffness,
+                                         std::numeric_limits<double>::infinity());
+    if (!mount.give.gives()) continue;
+    mount.name = held.name + (which == wire::End::left ? " left mount" : " right mount");
+    mount.end = which;
+    motion.mounts.push_back(mount);
+  }
+}
+
 /// A body whose centre of mass is on the pusher's axis moves along the push towards the wire at rest.
 coupling::Motion meeting(const coupling::PushProblem& test, const ImpactSettings& settings, double speed,
                          double side) {
   wire::RodInMotion rod = wire::rod_in_motion(test.wire, test.mount.span, settings.elements);
-  const auto end = test.mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp
-                                                               : wire::SpatialEnd::Kind::twisting_pin;
-  rod.properties.left.kind = rod.properties.right.kind = end;
+  set_mounts(test.mount, rod.properties);
   rod.damping = settings.damping;
   const Eigen::Matrix3Xd rest = coupling::resting_wire(rod);
   const double wire_radius = 0.5 * test.wire.diameter;
@@ -107,6 +133,7 @@ coupling::Motion meeting(const coupling::PushProblem& test, const ImpactSettings
   coupling::Motion motion;
   motion.gravity = {test.gravity[0], test.gravity[1], test.gravity[2]};
   motion.wires.push_back({"wire", rod, rest, {}, {}});
+  add_mounts(motion);
   coupling::MotionBody body;
   body.properties.mass = 2.0 * settings.mass;
   body.properties.inertia = settings.mass * Eigen::Matrix3d::Identity();
@@ -130,11 +157,18 @@ void add_mirror_image(coupling::Motion& motion, double position) {
   wire::SpatialEnd& left = image.rod.properties.left;
   wire::SpatialEnd& right = image.rod.properties.right;
   const double span = right.position.x();
+  std::swap(left.rotational_stiffness, right.rotational_stiffness);
   left.position.x() = 2.0 * position - span;
   right.position.x() = 2.0 * position;
   image.positions = image.positions.rowwise().reverse().eval();
   image.positions.row(0) = (2.0 * position - image.positions.row(0).array()).matrix();
   motion.wires.push_back(image);
+  for (coupling::MotionMount mount : std::vector(motion.mounts)) {
+    mount.name = "mirrored " + mount.name;
+    mount.wire = 1;
+    mount.end = mount.end == wire::End::left ? wire::End::right : wire::End::left;
+    motion.mounts.push_back(mount);
+  }
   coupling::MotionContact contact = motion.contacts.front();
   contact.name = "mirrored contact";
   contact.wire = 1;

@@ -184,7 +184,8 @@ void read_law_offsets(const TomlTable& table, WireCase& nominal) {
   }
 }
 
-/// `[damping]`: impacts on the wire in motion, which is elastic, naturally straight and held by rigid mounts.
+/// `[damping]`: impacts on the wire in motion, which is elastic, naturally straight and does not slip in its
+/// mounts.
 std::optional<ImpactSettings> read_impacts(const TomlTable& root, const scenario::PushTables& tables,
                                            const coupling::PushProblem& nominal) {
   if (!root.has("damping")) return std::nullopt;

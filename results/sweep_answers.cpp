@@ -229,44 +229,80 @@ std::vector<double> values_of_case(const SweepStudy& study, std::uint64_t index,
   return record.values.empty() ? study.sweep().design.values(index) : record.values;
 }
 
-SweepAnswers sweep_answers(const SweepStudy& study, const SweepCases& cases) {
-  const study::SweepFile& sweep = study.sweep();
-  const auto& variables = sweep.design.variables();
-  SweepAnswers answers;
-  answers.cases = study.count();
-  for (const study::Collected& field : sweep.collect) answers.fields.emplace_back().name = field.name;
-  for (const study::Limit& limit : sweep.limits) answers.limits.push_back({limit.name, 0, 0});
-  std::vector<Worst> worst;
-  std::vector<std::size_t> worst_field;
-  for (const study::Limit& limit : sweep.limits) {
-    worst.emplace_back(
-        fmt::format("{} {}", limit.above ? "largest" : "least", sweep.collect[limit.field].name),
-        limit.above ? 1.0 : -1.0);
-    worst_field.push_back(limit.field);
+namespace {
+
+/// Gathers what the cases of a sweep say, one after the other.
+class Gathering {
+ public:
+  Gathering(const SweepStudy& study, const SweepCases& cases)
+      : study_(study),
+        sweep_(study.sweep()),
+        every_(std::max<std::uint64_t>(1, cases.count / FieldAnswer::sample_limit)),
+        places_(sweep_.design.variables().size()),
+        squares_(sweep_.collect.size()) {
+    answers_.cases = study.count();
+    for (const study::Collected& field : sweep_.collect) answers_.fields.emplace_back().name = field.name;
+    for (const study::Limit& limit : sweep_.limits) {
+      answers_.limits.push_back({limit.name, 0, 0});
+      worst_.push_back(
+          {limit.field,
+           {fmt::format("{} {}", limit.above ? "largest" : "least", sweep_.collect[limit.field].name),
+            limit.above ? 1.0 : -1.0}});
+    }
+    for (std::size_t f = 0; sweep_.limits.empty() && f < sweep_.collect.size(); ++f)
+      worst_.push_back({f, {"largest " + sweep_.collect[f].name, 1.0}});
   }
-  for (std::size_t f = 0; sweep.limits.empty() && f < sweep.collect.size(); ++f) {
-    worst.emplace_back("largest " + sweep.collect[f].name, 1.0);
-    worst_field.push_back(f);
+
+  void add(std::uint64_t index, const CaseRecord& record) {
+    count(record);
+    const std::vector<double> values = values_of_case(study_, index, record);
+    add_places(values);
+    for (std::size_t f = 0; f < answers_.fields.size(); ++f) {
+      if (const std::optional<double> value = record.number(f))
+        add_number(f, *value, record.fields[f].is_boolean(), index % every_ == 0);
+    }
+    for (std::size_t l = 0; l < sweep_.limits.size(); ++l) {
+      const study::Limit& limit = sweep_.limits[l];
+      const std::optional<double> value = record.number(limit.field);
+      if (!value) continue;
+      ++answers_.limits[l].count;
+      answers_.limits[l].hits += (limit.above ? *value > limit.bound : *value < limit.bound) ? 1 : 0;
+    }
+    for (auto& [field, worst] : worst_) {
+      const std::optional<double> value = record.number(field);
+      if (value && !record.inferred() && !record.fields[field].is_boolean()) worst.add(index, *value, values);
+    }
   }
-  std::vector<std::vector<double>> places(
-      variables.size());  // that cells are made of: extremes, or all levels of a grid
-  const std::uint64_t every = std::max<std::uint64_t>(1, cases.count / FieldAnswer::sample_limit);
-  std::vector<double> squares(answers.fields.size());
-  for_each_case(study, cases, [&](std::uint64_t index, const CaseRecord& record) {
-    answers.finished += record.inferred() ? 0 : 1;
-    ++answers.statuses[record.status];
-    answers.seconds += record.seconds;
+
+  SweepAnswers end(const SweepCases& cases) {
+    for (std::size_t f = 0; f < answers_.fields.size(); ++f) {
+      FieldAnswer& field = answers_.fields[f];
+      finish(field);
+      if (field.count > 1) field.deviation = std::sqrt(squares_[f] / static_cast<double>(field.count - 1));
+      if (sweep_.design.settings().kind == DesignKind::sensitivity && field.count > 0)
+        field.indices = indices_of(f, cases);
+    }
+    for (const auto& [field, worst] : worst_) worst.append_to(answers_.worst, study_);
+    if (answers_.finished > 0) draw(study_, cases, places_, answers_);
+    return std::move(answers_);
+  }
+
+ private:
+  void count(const CaseRecord& record) {
+    answers_.finished += record.inferred() ? 0 : 1;
+    ++answers_.statuses[record.status];
+    answers_.seconds += record.seconds;
     constexpr std::size_t most_reasons = 100;
     if (!record.done() && !record.inferred() &&
-        (answers.reasons.size() < most_reasons || answers.reasons.contains(record.reason)))
-      ++answers.reasons[record.reason];
-    const std::vector<double> values = values_of_case(study, index, record);
-    for (std::size_t j = 0; j < variables.size(); ++j) {
-      const std::optional<double> x = shown_number(variables[j], values[j]);
-      if (!x) continue;
-      std::vector<double>& p = places[j];
-      constexpr std::size_t most_places = 200;
-      if (std::ranges::find(p, *x) != p.end()) continue;
+        (answers_.reasons.size() < most_reasons || answers_.reasons.contains(record.reason)))
+      ++answers_.reasons[record.reason];
+  }
+  void add_places(const std::vector<double>& values) {
+    constexpr std::size_t most_places = 200;
+    for (std::size_t j = 0; j < values.size() && j < places_.size(); ++j) {
+      const std::optional<double> x = shown_number(sweep_.design.variables()[j], values[j]);
+      std::vector<double>& p = places_[j];
+      if (!x || std::ranges::find(p, *x) != p.end()) continue;
       if (p.size() < most_places)
         p.push_back(*x);
       else if (*x < *std::ranges::min_element(p))
@@ -274,50 +310,46 @@ SweepAnswers sweep_answers(const SweepStudy& study, const SweepCases& cases) {
       else if (*x > *std::ranges::max_element(p))
         *std::ranges::max_element(p) = *x;
     }
-    for (std::size_t f = 0; f < answers.fields.size(); ++f) {
-      const std::optional<double> value = record.number(f);
-      if (!value) continue;
-      FieldAnswer& field = answers.fields[f];
-      const bool boolean = record.fields[f].is_boolean();
-      field.yes_or_no = field.yes_or_no && boolean;
-      field.hits += boolean && *value > 0.5 ? 1 : 0;
-      field.least = field.count == 0 ? *value : std::min(field.least, *value);
-      field.most = field.count == 0 ? *value : std::max(field.most, *value);
-      const double n = static_cast<double>(++field.count);  // Welford 1962
-      const double before = *value - field.mean;
-      field.mean += before / n;
-      squares[f] += before * (*value - field.mean);
-      if (index % every == 0) field.sample.push_back(*value);
-    }
-    for (std::size_t l = 0; l < sweep.limits.size(); ++l) {
-      const study::Limit& limit = sweep.limits[l];
-      const std::optional<double> value = record.number(limit.field);
-      if (!value) continue;
-      ++answers.limits[l].count;
-      answers.limits[l].hits += (limit.above ? *value > limit.bound : *value < limit.bound) ? 1 : 0;
-    }
-    for (std::size_t w = 0; w < worst.size(); ++w) {
-      const std::optional<double> value = record.number(worst_field[w]);
-      if (value && !record.inferred() && !record.fields[worst_field[w]].is_boolean())
-        worst[w].add(index, *value, values);
-    }
-  });
-  for (std::size_t f = 0; f < answers.fields.size(); ++f) {
-    FieldAnswer& field = answers.fields[f];
-    finish(field);
-    if (field.count > 1) field.deviation = std::sqrt(squares[f] / static_cast<double>(field.count - 1));
-    if (sweep.design.settings().kind != DesignKind::sensitivity || field.count == 0) continue;
-    field.indices = study::sobol_indices(
-        variables.size(), sweep.design.settings().cases, [&](std::uint64_t index) -> std::optional<double> {
-          const std::optional<std::string> line = cases.journal.result(index);
-          if (!line) return std::nullopt;
-          const auto record = study::record_of(*line);
-          return record && record->done() ? record->number(f) : std::nullopt;
-        });
   }
-  for (const Worst& one : worst) one.append_to(answers.worst, study);
-  if (answers.finished > 0) draw(study, cases, places, answers);
-  return answers;
+  void add_number(std::size_t f, double value, bool boolean, bool in_sample) {
+    FieldAnswer& field = answers_.fields[f];
+    field.yes_or_no = field.yes_or_no && boolean;
+    field.hits += boolean && value > 0.5 ? 1 : 0;
+    field.least = field.count == 0 ? value : std::min(field.least, value);
+    field.most = field.count == 0 ? value : std::max(field.most, value);
+    const double n = static_cast<double>(++field.count);  // Welford 1962
+    const double before = value - field.mean;
+    field.mean += before / n;
+    squares_[f] += before * (value - field.mean);
+    if (in_sample) field.sample.push_back(value);
+  }
+  [[nodiscard]] std::optional<study::SobolIndices> indices_of(std::size_t f, const SweepCases& cases) const {
+    return study::sobol_indices(sweep_.design.variables().size(), sweep_.design.settings().cases,
+                                [&](std::uint64_t index) -> std::optional<double> {
+                                  const std::optional<std::string> line = cases.journal.result(index);
+                                  if (!line) return std::nullopt;
+                                  const auto record = study::record_of(*line);
+                                  return record && record->done() ? record->number(f) : std::nullopt;
+                                });
+  }
+
+  const SweepStudy& study_;
+  const study::SweepFile& sweep_;
+  std::uint64_t every_;  // so many cases one is kept for quantiles
+  SweepAnswers answers_;
+  std::vector<std::pair<std::size_t, Worst>> worst_;  // with their fields
+  /// That cells are made of: extremes, or all levels of a grid.
+  std::vector<std::vector<double>> places_;
+  std::vector<double> squares_;  // of the deviations from the mean, one a field
+};
+
+}  // namespace
+
+SweepAnswers sweep_answers(const SweepStudy& study, const SweepCases& cases) {
+  Gathering gathering(study, cases);
+  for_each_case(study, cases,
+                [&](std::uint64_t index, const CaseRecord& record) { gathering.add(index, record); });
+  return gathering.end(cases);
 }
 
 study::Seen seen_of(const SweepStudy& study, const CaseRecord& record) {
@@ -366,17 +398,74 @@ void give_cases(TableSink& sink, const SweepStudy& study, const SweepCases& case
   });
 }
 
+namespace {
+
+json share_json(std::uint64_t hits, std::uint64_t count) {
+  if (count == 0) return nullptr;
+  const study::ProbabilityInterval interval = study::proportion_interval(hits, count);
+  return {{"cases", count},
+          {"hits", hits},
+          {"share", static_cast<double>(hits) / static_cast<double>(count)},
+          {"interval95", {interval.low, interval.high}},
+          {"interval_kind", "at least 95 % of independent cases"}};
+}
+
+json sobol_json(const study::SobolIndices& indices, const std::vector<study::Variable>& variables) {
+  json sobol{{"rows", indices.rows},
+             {"dropped", indices.dropped},
+             {"effective_rows", indices.effective_rows},
+             {"variance", indices.variance},
+             {"variables", json::object()}};
+  for (std::size_t j = 0; j < indices.of.size(); ++j) {
+    const study::SobolIndex& s = indices.of[j];
+    sobol["variables"][variables[j].name] = {
+        {"first", s.first},
+        {"first_interval95", {s.first - s.first_half, s.first + s.first_half}},
+        {"total", s.total},
+        {"total_interval95", {s.total - s.total_half, s.total + s.total_half}}};
+  }
+  return sobol;
+}
+
+json field_json(const FieldAnswer& field, const std::vector<study::Variable>& variables) {
+  json one{{"count", field.count}};
+  if (field.count == 0) return one;
+  if (field.yes_or_no) {
+    one["true"] = share_json(field.hits, field.count);
+  } else {
+    one.update(
+        {{"mean", field.mean}, {"deviation", field.deviation}, {"least", field.least}, {"most", field.most}});
+    for (const auto& [name, p] :
+         {std::pair{"q05", 0.05}, {"q25", 0.25}, {"q50", 0.5}, {"q75", 0.75}, {"q95", 0.95}})
+      one[name] = field.quantile(p);
+  }
+  if (field.indices) one["sobol"] = sobol_json(*field.indices, variables);
+  return one;
+}
+
+/// The answer of a search for a rare event, in place of shares of its cases, most of which it drew near the
+/// event.
+void add_failure(const study::SweepFile& sweep, const SubsetAnswer& subset, json& summary) {
+  json levels = json::array();
+  for (const auto& level : subset.levels) {
+    levels.push_back({{"threshold", results::finite(level.threshold)},
+                      {"probability", level.probability},
+                      {"variation", level.variation}});
+  }
+  summary["limits"] = json::object();
+  summary["drawn"] = false;
+  summary["failure"] = {{"limit", sweep.limits.front().name},
+                        {"reached", subset.reached},
+                        {"probability", subset.probability},
+                        {"coefficient_of_variation", subset.variation},
+                        {"interval95", {subset.interval.low, subset.interval.high}},
+                        {"levels", levels}};
+}
+
+}  // namespace
+
 json sweep_summary(const SweepStudy& study, const SweepAnswers& answers) {
   const study::SweepFile& sweep = study.sweep();
-  const auto probability = [](std::uint64_t hits, std::uint64_t count) -> json {
-    if (count == 0) return nullptr;
-    const study::ProbabilityInterval interval = study::proportion_interval(hits, count);
-    return {{"cases", count},
-            {"hits", hits},
-            {"share", static_cast<double>(hits) / static_cast<double>(count)},
-            {"interval95", {interval.low, interval.high}},
-            {"interval_kind", "at least 95 % of independent cases"}};
-  };
   const bool drawn =
       sweep.design.settings().kind != DesignKind::grid && sweep.design.settings().kind != DesignKind::file;
   json summary{{"schema", "snare-sweep-summary/1"},
@@ -396,59 +485,13 @@ json sweep_summary(const SweepStudy& study, const SweepAnswers& answers) {
                {"limits", json::object()},
                {"worst", json::array()}};
   if (sweep.histories && !answers.interrupted) summary["histories"] = "histories.h5";
-  const auto& variables = sweep.design.variables();
-  for (const FieldAnswer& field : answers.fields) {
-    json& one = summary["fields"][field.name];
-    one = {{"count", field.count}};
-    if (field.count == 0) continue;
-    if (field.yes_or_no) {
-      one["true"] = probability(field.hits, field.count);
-    } else {
-      one.update({{"mean", field.mean},
-                  {"deviation", field.deviation},
-                  {"least", field.least},
-                  {"most", field.most}});
-      for (const auto& [name, p] :
-           {std::pair{"q05", 0.05}, {"q25", 0.25}, {"q50", 0.5}, {"q75", 0.75}, {"q95", 0.95}})
-        one[name] = field.quantile(p);
-    }
-    if (!field.indices) continue;
-    json& sobol = one["sobol"];
-    sobol = {{"rows", field.indices->rows},
-             {"dropped", field.indices->dropped},
-             {"effective_rows", field.indices->effective_rows},
-             {"variance", field.indices->variance},
-             {"variables", json::object()}};
-    for (std::size_t j = 0; j < field.indices->of.size(); ++j) {
-      const study::SobolIndex& s = field.indices->of[j];
-      sobol["variables"][variables[j].name] = {
-          {"first", s.first},
-          {"first_interval95", {s.first - s.first_half, s.first + s.first_half}},
-          {"total", s.total},
-          {"total_interval95", {s.total - s.total_half, s.total + s.total_half}}};
-    }
-  }
+  for (const FieldAnswer& field : answers.fields)
+    summary["fields"][field.name] = field_json(field, sweep.design.variables());
   for (const LimitAnswer& limit : answers.limits)
-    summary["limits"][limit.name] = probability(limit.hits, limit.count);
+    summary["limits"][limit.name] = share_json(limit.hits, limit.count);
   for (const CaseAnswer& one : answers.worst)
     summary["worst"].push_back({{"case", one.number}, {"why", one.why}, {"command", one.command}});
-  if (answers.subset) {
-    json levels = json::array();
-    for (const auto& level : answers.subset->levels) {
-      levels.push_back({{"threshold", results::finite(level.threshold)},
-                        {"probability", level.probability},
-                        {"variation", level.variation}});
-    }
-    // The shares of the cases are not those of the distribution: most were drawn near the event.
-    summary["limits"] = json::object();
-    summary["drawn"] = false;
-    summary["failure"] = {{"limit", sweep.limits.front().name},
-                          {"reached", answers.subset->reached},
-                          {"probability", answers.subset->probability},
-                          {"coefficient_of_variation", answers.subset->variation},
-                          {"interval95", {answers.subset->interval.low, answers.subset->interval.high}},
-                          {"levels", levels}};
-  }
+  if (answers.subset) add_failure(sweep, *answers.subset, summary);
   return summary;
 }
 

@@ -30,8 +30,7 @@ inline constexpr std::array<const char*, 2> own_rotational_keys{"rotational_stif
 /// Keys in [mount] with which mounts are not rigid.
 [[nodiscard]] std::array<const char*, 7> keys_of_giving_mounts();
 
-/// Reports what the wire in motion does not have: supports, slipping or elastic mounts, yielding, natural
-/// curvature.
+/// Reports what the wire of an impact does not have: supports, mounts that slip, yielding, natural curvature.
 void require_simple_motion(const PushTables& tables, const coupling::PushProblem& test);
 
 /// Reads and checks a wire alone, of a table with the keys of [wire].

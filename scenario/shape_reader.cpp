@@ -195,92 +195,113 @@ std::optional<ShaftSize> read_shaft_size(const TomlTable& table) {
   }
 }
 
-ShapePoints read_shape_points(const TomlTable& table, const std::filesystem::path& folder) {
-  ShapePoints result;
-  const auto kind = read_kind(table);
-  if (!kind) return result;
-  const Range size = Range::above(0.0, far), from_zero = Range::from(0.0, far);
-  const int around = table.integer_or("rim_points", 8, 1, 1000);
-  const auto rim = [&](double radius, double height) {
-    const int count = radius > 0.0 ? around : 1;
+namespace {
+
+/// Points of a shape's rims and axis as its table asks for them.
+class PointReader {
+ public:
+  explicit PointReader(const TomlTable& table)
+      : table_(table), around_(table.integer_or("rim_points", 8, 1, 1000)) {}
+
+  ShapePoints of(ShapeKind kind, const std::filesystem::path& folder) {
+    switch (kind) {
+      case ShapeKind::sphere:
+        result_.points.emplace_back(Eigen::Vector3d::Zero());
+        result_.radius = size("radius_mm");
+        break;
+      case ShapeKind::knife_edge:
+      case ShapeKind::capsule:
+        axis(half_length());
+        if (kind == ShapeKind::capsule) result_.radius = size("radius_mm");
+        break;
+      case ShapeKind::cylinder:
+      case ShapeKind::cone:
+      case ShapeKind::ring:
+        rims_at_the_ends(kind, half_length());
+        break;
+      case ShapeKind::grapple_shaft: {
+        const coupling::GrappleShaft s = read_grapple_shaft(table_);
+        const double cam = s.shaft_length + s.underside_length;
+        rim(s.shaft_radius, 0.0);
+        rim(s.cam_radius, cam);
+        rim(s.end_radius, cam + s.cam_length);
+        break;
+      }
+      case ShapeKind::cup: {
+        const double inner = size("inner_radius_mm"), thickness = size("thickness_mm");
+        const double depth = size("depth_mm");
+        rim(inner, depth);
+        rim(inner + thickness, depth);
+        rim(inner + thickness, -thickness);
+        break;
+      }
+      case ShapeKind::plane:
+        break;
+      case ShapeKind::revolved: {
+        const std::vector<double> radius = table_.numbers("radius_mm", 3, 1000, Range::from(0.0, far), mm);
+        const std::vector<double> height =
+            table_.numbers("height_mm", radius.size(), radius.size(), Range::from(-far, far), mm);
+        for (std::size_t k = 0; k < std::min(radius.size(), height.size()); ++k) rim(radius[k], height[k]);
+        break;
+      }
+      case ShapeKind::mesh:
+        mesh(folder);
+        break;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] double size(const char* key) const { return table_.number(key, Range::above(0.0, far), mm); }
+  [[nodiscard]] double size_or_zero(const char* key) const {
+    return table_.number(key, Range::from(0.0, far), mm);
+  }
+  [[nodiscard]] double half_length() const { return 0.5 * size("length_mm"); }
+  void rim(double radius, double height) {
+    const int count = radius > 0.0 ? around_ : 1;
     for (int k = 0; k < count; ++k) {
       const double azimuth = 2.0 * std::numbers::pi * k / count;
-      result.points.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth), height);
-    }
-  };
-  const auto number = [&](const char* key, const Range& range) { return table.number(key, range, mm); };
-  switch (*kind) {
-    case ShapeKind::sphere:
-      result.points.emplace_back(Eigen::Vector3d::Zero());
-      result.radius = number("radius_mm", size);
-      break;
-    case ShapeKind::knife_edge:
-    case ShapeKind::capsule: {
-      const double half = 0.5 * number("length_mm", size);
-      const int along = table.integer_or("axis_points", 2, 2, 1000);
-      for (int k = 0; k < along; ++k)
-        result.points.emplace_back(0.0, 0.0, half * (2.0 * k / (along - 1) - 1.0));
-      if (*kind == ShapeKind::capsule) result.radius = number("radius_mm", size);
-      break;
-    }
-    case ShapeKind::cylinder: {
-      const double half = 0.5 * number("length_mm", size);
-      for (const double z : {-half, half}) rim(number("radius_mm", size), z);
-      break;
-    }
-    case ShapeKind::cone: {
-      const double half = 0.5 * number("length_mm", size);
-      rim(number("lower_radius_mm", from_zero), -half);
-      rim(number("upper_radius_mm", from_zero), half);
-      break;
-    }
-    case ShapeKind::grapple_shaft: {
-      const coupling::GrappleShaft s = read_grapple_shaft(table);
-      const double cam = s.shaft_length + s.underside_length;
-      rim(s.shaft_radius, 0.0);
-      rim(s.cam_radius, cam);
-      rim(s.end_radius, cam + s.cam_length);
-      break;
-    }
-    case ShapeKind::ring: {
-      const double half = 0.5 * number("length_mm", size);
-      for (const double z : {-half, half}) {
-        rim(number("inner_radius_mm", size), z);
-        rim(number("outer_radius_mm", size), z);
-      }
-      break;
-    }
-    case ShapeKind::cup: {
-      const double inner = number("inner_radius_mm", size), thickness = number("thickness_mm", size);
-      const double depth = number("depth_mm", size);
-      rim(inner, depth);
-      rim(inner + thickness, depth);
-      rim(inner + thickness, -thickness);
-      break;
-    }
-    case ShapeKind::plane:
-      break;
-    case ShapeKind::revolved: {
-      const std::vector<double> radius = table.numbers("radius_mm", 3, 1000, from_zero, mm);
-      const std::vector<double> height =
-          table.numbers("height_mm", radius.size(), radius.size(), Range::from(-far, far), mm);
-      for (std::size_t k = 0; k < std::min(radius.size(), height.size()); ++k) rim(radius[k], height[k]);
-      break;
-    }
-    case ShapeKind::mesh: {
-      static constexpr Choice<double> units[] = {{"mm", 1e-3}, {"m", 1.0}};
-      const auto unit = table.choice("unit", units);
-      const std::string name = table.text("file");
-      if (name.empty() || !unit) break;
-      try {
-        result.points = coupling::read_triangle_mesh(folder / name, *unit).points;
-      } catch (const base::InputError&) {  // told where the shape is read
-        result.points.clear();
-      }
-      break;
+      result_.points.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth), height);
     }
   }
-  return result;
+  void axis(double half) {
+    const int along = table_.integer_or("axis_points", 2, 2, 1000);
+    for (int k = 0; k < along; ++k)
+      result_.points.emplace_back(0.0, 0.0, half * (2.0 * k / (along - 1) - 1.0));
+  }
+  void rims_at_the_ends(ShapeKind kind, double half) {
+    if (kind == ShapeKind::cone) {
+      rim(size_or_zero("lower_radius_mm"), -half);
+      rim(size_or_zero("upper_radius_mm"), half);
+      return;
+    }
+    for (const double z : {-half, half}) {
+      rim(size(kind == ShapeKind::ring ? "inner_radius_mm" : "radius_mm"), z);
+      if (kind == ShapeKind::ring) rim(size("outer_radius_mm"), z);
+    }
+  }
+  void mesh(const std::filesystem::path& folder) {
+    static constexpr Choice<double> units[] = {{"mm", 1e-3}, {"m", 1.0}};
+    const auto unit = table_.choice("unit", units);
+    const std::string name = table_.text("file");
+    if (name.empty() || !unit) return;
+    try {
+      result_.points = coupling::read_triangle_mesh(folder / name, *unit).points;
+    } catch (const base::InputError&) {  // told where the shape is read
+      result_.points.clear();
+    }
+  }
+
+  const TomlTable& table_;
+  int around_;  // points of a rim
+  ShapePoints result_;
+};
+
+}  // namespace
+
+ShapePoints read_shape_points(const TomlTable& table, const std::filesystem::path& folder) {
+  const auto kind = read_kind(table);
+  return kind ? PointReader(table).of(*kind, folder) : ShapePoints();
 }
 
 }  // namespace snare::scenario

@@ -214,8 +214,11 @@ def published_parameters(stored):
 
 @region
 def traced_wire(stored):
-    kind = stored.json("reproduce.json")["trace"]["verdict_kind"].replace("_", " ")
-    return (f"`snare reproduce` writes this wire as `traced.toml`; `data/wires/traced_published.toml` is a copy. Verdict of the tracing: {kind}.\n")
+    leading = stored.json("reproduce.json")["leading"]
+    values = "; ".join(f"`{key}` {number(value, 3)}" for key, value in sorted(leading["recomputed"]["values"].items()))
+    return (f"`snare reproduce` writes the wire and the mounts of the leading explanation, {leading['meaning']}, as `traced.toml`; "
+            f"`data/wires/traced_published.toml` is a copy. Fitted to {leading['readings']} readings up to {number(leading['range_mm'], 3)} mm "
+            f"(p = {number(leading['recomputed']['p'], 2)}): {values}.\n")
 
 
 # ---- docs/results/tracing.md ----

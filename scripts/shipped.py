@@ -13,6 +13,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import tomllib
 
 NUMBER = re.compile(r"(?<![\w#.])[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?(?![\w.]*\w)")
 COLOUR = re.compile(r"#[0-9a-fA-F]{6}\b|\bcurrentColor\b")
@@ -475,19 +476,14 @@ def traced_records(snare, root, folder):
 
 # ---- the air table by the bench of the published fits ----
 
-# What a leading model of `snare reproduce` gives, as `mount` of a wire in motion: one over its compliance.
-IN_MOTION = {"mount_axial_compliance.compliance_m_N": "translational_stiffness_N_m",
-             "mount_rotational_compliance.compliance_rad_Nm": "rotational_stiffness_Nm_rad"}
 BEFORE_THE_WIRE = "bodies[target].position_mm=[40.0, -97.0, 0.0]"  # the wire stands out further where its mounts give
 
 
 @maker(results("air_table_bench.json"), relative=2e-3)
 def air_table_bench(snare, root, folder):
     """The impact on the air table by the declared bench, by the leading one of the published fits, and by the published law."""
-    values = json.loads((root / results("reproduce.json")).read_text(encoding="utf-8"))["leading"]["values"]
-    mount = ", ".join(f"{IN_MOTION[key]} = {1.0 / value:.6g}" for key, value in values.items() if key in IN_MOTION)
-    if not mount:
-        raise Skipped("the leading model gives nothing that a mount in motion can")
+    traced = tomllib.loads((root / TRACED).read_text(encoding="utf-8"))["mount"]
+    mount = ", ".join(f"{key} = {value:.6g}" for key, value in traced.items() if "stiffness" in key)
     changes = {"declared": (), "leading": (f"wires[wire].mount={{{mount}}}",), "published_law": ('wires[wire].model="quadratic"',)}
     made = {"leading_mount": mount}
     for name, change in changes.items():

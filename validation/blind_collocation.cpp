@@ -138,8 +138,7 @@ Collocation::Point Collocation::evaluate(const Section& law, const Conditions& a
   return p;
 }
 
-// Rows: clamp, two a interval, clamp. Interval from a to b of width h:
-//   u_m = (u_a + u_b)/2 + h/8 (u'_a - u'_b),  R = u_b - u_a - h/6 (u'_a + 4 u'_m + u'_b).
+// Rows: clamp, two a interval, clamp.
 void Collocation::assemble(const Section& law, const Conditions& at, const Unknowns& z) {
   for (auto& a : arm_) a = {};
   for (auto& a : arm_global_) a = {};
@@ -156,100 +155,118 @@ void Collocation::assemble(const Section& law, const Conditions& at, const Unkno
     if (right) side = {true, z.contact, length_ - z.contact, z.n - z.f, z.begin};
     const std::size_t first = right ? left_ : 0;
     const std::size_t last = right ? left_ + right_ : left_;
-    const std::size_t row_x = right ? 2 : 0;
     double fraction = 0.0;
     Point a = evaluate(law, at, side, side.begin, 0.0, z.section[first], guess_[2 * first]);
     guess_[2 * first] = a.kappa;
     for (std::size_t i = first; i < last; ++i) {
-      const double next = fraction_[i + 1];
-      const double h = side.length * (next - fraction);
-      // h by S_c and S_0.
-      const Four dh{0.0, 0.0, (right ? -1.0 : 1.0) * (next - fraction), right ? 0.0 : fraction - next};
-      const auto& ua = z.section[i];
-      const auto& ub = z.section[i + 1];
-      const Point b = evaluate(law, at, side, side.begin + side.length * next, next, ub, guess_[2 * i + 2]);
-      guess_[2 * i + 2] = b.kappa;
-      const double middle = 0.5 * (fraction + next);
-      const std::array<double, 2> um{0.5 * (ua[0] + ub[0]) + 0.125 * h * (a.kappa - b.kappa),
-                                     0.5 * (ua[1] + ub[1]) + 0.125 * h * (a.slope - b.slope)};
-      const Point m =
-          evaluate(law, at, side, side.begin + side.length * middle, middle, um, guess_[2 * i + 1]);
-      guess_[2 * i + 1] = m.kappa;
-
-      const double h6 = h / 6.0;
-      const double h8 = h / 8.0;
-      const double sum_th = (a.kappa + 4.0 * m.kappa + b.kappa) / 6.0;
-      const double sum_M = (a.slope + 4.0 * m.slope + b.slope) / 6.0;
-      const double sum_x = (a.gx + 4.0 * m.gx + b.gx) / 6.0;
-      const double sum_y = (a.gy + 4.0 * m.gy + b.gy) / 6.0;
-      const double by_M = 4.0 * m.kappa_M;
-      const double by_th = 4.0 * m.slope_th;
-      // th_m = ... + h/8 (kappa_a - kappa_b) depends on M; M_m = ... + h/8 (M'_a - M'_b) on th.
-      auto& upper = band_[2 * i + 1];  // columns 2 i - 1 ...
-      auto& lower = band_[2 * i + 2];  // columns 2 i ...
-      upper = {0.0,
-               -1.0 - h6 * by_M * h8 * a.slope_th,
-               -h6 * (a.kappa_M + 0.5 * by_M),
-               1.0 + h6 * by_M * h8 * b.slope_th,
-               -h6 * (b.kappa_M + 0.5 * by_M),
-               0.0,
-               0.0};
-      lower = {-h6 * (a.slope_th + 0.5 * by_th),
-               -1.0 - h6 * by_th * h8 * a.kappa_M,
-               -h6 * (b.slope_th + 0.5 * by_th),
-               1.0 + h6 * by_th * h8 * b.kappa_M,
-               0.0,
-               0.0,
-               0.0};
-      Column& up = columns_[2 * i + 1];
-      Column& low = columns_[2 * i + 2];
-      up[kGlobals] = ub[0] - ua[0] - h * sum_th;
-      low[kGlobals] = ub[1] - ua[1] - h * sum_M;
-
-      auto& arm_a = arm_[i];
-      auto& arm_b = arm_[i + 1];
-      arm_a[row_x][0] += h6 * (a.gx_th + 2.0 * m.gx_th);
-      arm_a[row_x][1] += h6 * 4.0 * m.gx_th * h8 * a.kappa_M;
-      arm_a[row_x + 1][0] += h6 * (a.gy_th + 2.0 * m.gy_th);
-      arm_a[row_x + 1][1] += h6 * 4.0 * m.gy_th * h8 * a.kappa_M;
-      arm_b[row_x][0] += h6 * (b.gx_th + 2.0 * m.gx_th);
-      arm_b[row_x][1] -= h6 * 4.0 * m.gx_th * h8 * b.kappa_M;
-      arm_b[row_x + 1][0] += h6 * (b.gy_th + 2.0 * m.gy_th);
-      arm_b[row_x + 1][1] -= h6 * 4.0 * m.gy_th * h8 * b.kappa_M;
-
-      Four th_q;
-      Four M_q;
-      Four x_q;
-      Four y_q;
-      for (std::size_t j = 0; j < 4; ++j) {
-        const double thm = h8 * (a.kappa_q[j] - b.kappa_q[j]) + 0.125 * dh[j] * (a.kappa - b.kappa);
-        const double Mm = h8 * (a.slope_q[j] - b.slope_q[j]) + 0.125 * dh[j] * (a.slope - b.slope);
-        th_q[j] = -h6 * (a.kappa_q[j] + 4.0 * m.kappa_q[j] + by_M * Mm + b.kappa_q[j]) - dh[j] * sum_th;
-        M_q[j] = -h6 * (a.slope_q[j] + 4.0 * m.slope_q[j] + by_th * thm + b.slope_q[j]) - dh[j] * sum_M;
-        x_q[j] = h6 * (a.gx_q[j] + 4.0 * (m.gx_q[j] + m.gx_th * thm) + b.gx_q[j]) + dh[j] * sum_x;
-        y_q[j] = h6 * (a.gy_q[j] + 4.0 * (m.gy_q[j] + m.gy_th * thm) + b.gy_q[j]) + dh[j] * sum_y;
-      }
-      // n of the right side is n_0 - f.
-      const double f_sign = right ? -1.0 : 0.0;
-      const auto spread = [f_sign](Column& column, const Four& q, double sign) {
-        column[0] += sign * q[0];
-        column[1] += sign * q[1];
-        column[2] += sign * f_sign * q[0];
-        column[3] += sign * f_sign * q[1];
-        column[4] += sign * q[2];
-        column[5] += sign * q[3];
-      };
-      for (std::size_t j = 0; j < kGlobals; ++j) up[j] = low[j] = 0.0;
-      spread(up, th_q, 1.0);
-      spread(low, M_q, 1.0);
-      spread(arm_global_[row_x], x_q, 1.0);
-      spread(arm_global_[row_x + 1], y_q, 1.0);
-      arm_global_[row_x][kGlobals] += h * sum_x;
-      arm_global_[row_x + 1][kGlobals] += h * sum_y;
-      a = b;
-      fraction = next;
+      a = add_interval(law, at, z, side, i, fraction, a);
+      fraction = fraction_[i + 1];
     }
   }
+}
+
+// Interval from a to b of width h:
+//   u_m = (u_a + u_b)/2 + h/8 (u'_a - u'_b),  R = u_b - u_a - h/6 (u'_a + 4 u'_m + u'_b).
+Collocation::Point Collocation::add_interval(const Section& law, const Conditions& at, const Unknowns& z,
+                                             const Side& side, std::size_t i, double fraction,
+                                             const Point& a) {
+  const bool right = side.right;
+  const double next = fraction_[i + 1];
+  const double h = side.length * (next - fraction);
+  const auto& ua = z.section[i];
+  const auto& ub = z.section[i + 1];
+  const Point b = evaluate(law, at, side, side.begin + side.length * next, next, ub, guess_[2 * i + 2]);
+  guess_[2 * i + 2] = b.kappa;
+  const double middle = 0.5 * (fraction + next);
+  const std::array<double, 2> um{0.5 * (ua[0] + ub[0]) + 0.125 * h * (a.kappa - b.kappa),
+                                 0.5 * (ua[1] + ub[1]) + 0.125 * h * (a.slope - b.slope)};
+  const Point m = evaluate(law, at, side, side.begin + side.length * middle, middle, um, guess_[2 * i + 1]);
+  guess_[2 * i + 1] = m.kappa;
+
+  const double h6 = h / 6.0;
+  const double h8 = h / 8.0;
+  const double by_M = 4.0 * m.kappa_M;
+  const double by_th = 4.0 * m.slope_th;
+  // th_m = ... + h/8 (kappa_a - kappa_b) depends on M; M_m = ... + h/8 (M'_a - M'_b) on th.
+  auto& upper = band_[2 * i + 1];  // columns 2 i - 1 ...
+  auto& lower = band_[2 * i + 2];  // columns 2 i ...
+  upper = {0.0,
+           -1.0 - h6 * by_M * h8 * a.slope_th,
+           -h6 * (a.kappa_M + 0.5 * by_M),
+           1.0 + h6 * by_M * h8 * b.slope_th,
+           -h6 * (b.kappa_M + 0.5 * by_M),
+           0.0,
+           0.0};
+  lower = {-h6 * (a.slope_th + 0.5 * by_th),
+           -1.0 - h6 * by_th * h8 * a.kappa_M,
+           -h6 * (b.slope_th + 0.5 * by_th),
+           1.0 + h6 * by_th * h8 * b.kappa_M,
+           0.0,
+           0.0,
+           0.0};
+  const std::size_t row_x = right ? 2 : 0;
+  auto& arm_a = arm_[i];
+  auto& arm_b = arm_[i + 1];
+  arm_a[row_x][0] += h6 * (a.gx_th + 2.0 * m.gx_th);
+  arm_a[row_x][1] += h6 * 4.0 * m.gx_th * h8 * a.kappa_M;
+  arm_a[row_x + 1][0] += h6 * (a.gy_th + 2.0 * m.gy_th);
+  arm_a[row_x + 1][1] += h6 * 4.0 * m.gy_th * h8 * a.kappa_M;
+  arm_b[row_x][0] += h6 * (b.gx_th + 2.0 * m.gx_th);
+  arm_b[row_x][1] -= h6 * 4.0 * m.gx_th * h8 * b.kappa_M;
+  arm_b[row_x + 1][0] += h6 * (b.gy_th + 2.0 * m.gy_th);
+  arm_b[row_x + 1][1] -= h6 * 4.0 * m.gy_th * h8 * b.kappa_M;
+  // h by S_c and S_0.
+  const Four dh{0.0, 0.0, (right ? -1.0 : 1.0) * (next - fraction), right ? 0.0 : fraction - next};
+  add_interval_globals({a, m, b}, h, dh, {ub[0] - ua[0], ub[1] - ua[1]}, right, i);
+  return b;
+}
+
+// Residuals of an interval with points a, m, b, and their derivatives by the globals. du: u_b - u_a.
+void Collocation::add_interval_globals(const std::array<Point, 3>& points, double h, const Four& dh,
+                                       const std::array<double, 2>& du, bool right, std::size_t i) {
+  const auto& [a, m, b] = points;
+  const double h6 = h / 6.0;
+  const double h8 = h / 8.0;
+  const double by_M = 4.0 * m.kappa_M;
+  const double by_th = 4.0 * m.slope_th;
+  const double sum_th = (a.kappa + 4.0 * m.kappa + b.kappa) / 6.0;
+  const double sum_M = (a.slope + 4.0 * m.slope + b.slope) / 6.0;
+  const double sum_x = (a.gx + 4.0 * m.gx + b.gx) / 6.0;
+  const double sum_y = (a.gy + 4.0 * m.gy + b.gy) / 6.0;
+  Column& up = columns_[2 * i + 1];
+  Column& low = columns_[2 * i + 2];
+  up[kGlobals] = du[0] - h * sum_th;
+  low[kGlobals] = du[1] - h * sum_M;
+  Four th_q;
+  Four M_q;
+  Four x_q;
+  Four y_q;
+  for (std::size_t j = 0; j < 4; ++j) {
+    const double thm = h8 * (a.kappa_q[j] - b.kappa_q[j]) + 0.125 * dh[j] * (a.kappa - b.kappa);
+    const double Mm = h8 * (a.slope_q[j] - b.slope_q[j]) + 0.125 * dh[j] * (a.slope - b.slope);
+    th_q[j] = -h6 * (a.kappa_q[j] + 4.0 * m.kappa_q[j] + by_M * Mm + b.kappa_q[j]) - dh[j] * sum_th;
+    M_q[j] = -h6 * (a.slope_q[j] + 4.0 * m.slope_q[j] + by_th * thm + b.slope_q[j]) - dh[j] * sum_M;
+    x_q[j] = h6 * (a.gx_q[j] + 4.0 * (m.gx_q[j] + m.gx_th * thm) + b.gx_q[j]) + dh[j] * sum_x;
+    y_q[j] = h6 * (a.gy_q[j] + 4.0 * (m.gy_q[j] + m.gy_th * thm) + b.gy_q[j]) + dh[j] * sum_y;
+  }
+  // n of the right side is n_0 - f.
+  const double f_sign = right ? -1.0 : 0.0;
+  const auto spread = [f_sign](Column& column, const Four& q, double sign) {
+    column[0] += sign * q[0];
+    column[1] += sign * q[1];
+    column[2] += sign * f_sign * q[0];
+    column[3] += sign * f_sign * q[1];
+    column[4] += sign * q[2];
+    column[5] += sign * q[3];
+  };
+  const std::size_t row_x = right ? 2 : 0;
+  for (std::size_t j = 0; j < kGlobals; ++j) up[j] = low[j] = 0.0;
+  spread(up, th_q, 1.0);
+  spread(low, M_q, 1.0);
+  spread(arm_global_[row_x], x_q, 1.0);
+  spread(arm_global_[row_x + 1], y_q, 1.0);
+  arm_global_[row_x][kGlobals] += h * sum_x;
+  arm_global_[row_x + 1][kGlobals] += h * sum_y;
 }
 
 // The six conditions on the globals, all as residuals:

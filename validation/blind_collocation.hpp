@@ -76,6 +76,11 @@ class Collocation {
   [[nodiscard]] Point evaluate(const Section& law, const Conditions& at, const Side& side, double S,
                                double fraction, const std::array<double, 2>& u, double guess) const;
   void assemble(const Section& law, const Conditions& at, const Unknowns& z);
+  /// Interval i, from its first point at `fraction` of the side; returns its last one.
+  Point add_interval(const Section& law, const Conditions& at, const Unknowns& z, const Side& side,
+                     std::size_t i, double fraction, const Point& a);
+  void add_interval_globals(const std::array<Point, 3>& points, double h, const std::array<double, 4>& dh,
+                            const std::array<double, 2>& du, bool right, std::size_t i);
   void close(const Section& law, const Conditions& at, const Unknowns& z, Square& by_global,
              Globals& residual);
   [[nodiscard]] bool eliminate();

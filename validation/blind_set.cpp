@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <tuple>
@@ -299,23 +300,11 @@ std::vector<std::string> effects_in(const std::string& name) {
   return effects;
 }
 
-BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, const BlindDesign& design) {
-  const auto& known = blind_effects();
-  const std::vector<std::string> inside = effect == "none" ? std::vector<std::string>() : effects_in(effect);
-  for (const std::string& one : inside) {
-    if (std::find(known.begin(), known.end(), one) == known.end())
-      throw std::invalid_argument("no blind effect " + one);
-  }
+namespace {
+
+/// What the wire and the bench really are, drawn once a seed whatever the effect.
+Hidden hidden_of(unsigned seed, const BlindDesign& design) {
   std::mt19937 random(7919u * seed + 17u);
-  // Noise of its own for every set: a seed whose noise happens to look like an effect must not count many
-  // times.
-  const auto place = [&](const std::string& one) {
-    return static_cast<unsigned>(std::find(known.begin(), known.end(), one) - known.begin());
-  };
-  unsigned which = inside.empty() ? place(effect) : 0;
-  for (const std::string& one : inside) which = 100 * which + place(one);
-  std::seed_seq own{seed, which, static_cast<unsigned>(std::lround(10.0 * size))};
-  std::mt19937 noise(own);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
   Hidden h;
@@ -334,94 +323,132 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
   h.length = length + design.length_deviation * normal(random);
   for (std::size_t k = 0; k < std::size(pushes); ++k)
     h.position_off.push_back(design.position_deviation * normal(random));
-  const std::vector<Push> made = pushes_of(design);
-  // A uniform natural curvature does nothing between rigid clamps.
-  const bool curved = std::find(inside.begin(), inside.end(), "natural_curvature") != inside.end();
-  h.clamp_compliance = curved ? 0.5 : 0.0;
+  return h;
+}
 
-  double highest_tension = 0.0;
+/// Noise of its own for every set: a seed whose noise happens to look like an effect must not count many
+/// times.
+std::mt19937 noise_of(const std::string& effect, const std::vector<std::string>& inside, double size,
+                      unsigned seed) {
+  const auto& known = blind_effects();
+  const auto place = [&](const std::string& one) {
+    return static_cast<unsigned>(std::find(known.begin(), known.end(), one) - known.begin());
+  };
+  unsigned which = inside.empty() ? place(effect) : 0;
+  for (const std::string& one : inside) which = 100 * which + place(one);
+  std::seed_seq own{seed, which, static_cast<unsigned>(std::lround(10.0 * size))};
+  return std::mt19937(own);
+}
+
+double highest_tension_of(const std::vector<Push>& made, const Hidden& h, const BlindDesign& design) {
+  double highest = 0.0;
   for (std::size_t k = 0; k < made.size(); ++k) {
     BlindWire wire = wire_of(made[k], h);
     wire.position += h.position_off[k];
-    for (const BlindReading& r : blind_push(wire, travel_of(made[k], design.readings_a_leg))) {
-      highest_tension = std::max(highest_tension, r.tension_left);
-    }
+    for (const BlindReading& r : blind_push(wire, travel_of(made[k], design.readings_a_leg)))
+      highest = std::max(highest, r.tension_left);
   }
-  // Of tension, or of the buckled shape: amplitude 2 sqrt(slack / L) of the tangent, E of the strand.
-  const double slack = length - pushes[0].span;
-  h.highest_stress =
-      std::max(highest_tension * 4.0 / (std::numbers::pi * diameter * diameter),
-               0.5 * modulus * 0.5 * diameter * 4.0 * std::numbers::pi / length * std::sqrt(slack / length));
-  // An effect is of one size whatever the density of its readings.
-  BlindDesign sized = design;
-  sized.readings_a_leg = BlindDesign{}.readings_a_leg;
-  const Eigen::VectorXd plain = read_all({}, h, highest_tension, sized);
-  Eigen::VectorXd force = plain;
-  BlindSet set;
-  set.effect = effect;
-  set.bending_stiffness = h.bending;
-  set.axial_stiffness = h.axial;
-  std::vector<Perturbation> doses;
-  for (const std::string& one : inside) {
-    constexpr double ratio = 1e-3;   // of a stiffness
-    constexpr double longer = 1e-5;  // [m]
-    Eigen::MatrixXd base(plain.size(), design.length_deviation > 0.0 ? 3 : 2);
-    for (Eigen::Index k = 0; k < base.cols(); ++k) {
-      Hidden other = h;
-      if (k == 0) other.bending *= 1.0 + ratio;
-      if (k == 1) other.axial *= 1.0 + ratio;
-      if (k == 2) other.length += longer;
-      base.col(k) = read_all({}, other, highest_tension, sized) - plain;
-    }
-    const Places places(h, highest_tension, sized);
-    base = places.white(base);
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(base);
-    // Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not
-    // linearly. Beside a length it moves it by more, and they are taken to the end.
-    const int most_steps = base.cols() > 2 ? 40 : 2;
-    const auto size_of = [&](const Eigen::VectorXd& changed) {
-      Hidden fitted = h;
-      Eigen::VectorXd left = changed - plain;
-      for (int k = 0; k < most_steps; ++k) {
-        const Eigen::VectorXd step = qr.solve(places.white(left));
-        fitted.bending *= std::exp(std::clamp(ratio * step[0], -0.5, 0.5));
-        fitted.axial *= std::exp(std::clamp(ratio * step[1], -0.5, 0.5));
-        if (step.size() > 2) fitted.length += std::clamp(longer * step[2], -0.5 * mm, 0.5 * mm);
-        left = changed - read_all({}, fitted, highest_tension, sized);
-        if (k > 1 && (base * step).norm() < 0.1 * sigma) break;
-      }
-      const Eigen::VectorXd white = places.white(left);
-      return (white - base * qr.solve(white)).norm() / sigma;
-    };
-    // The size rises steadily with the amount: proportional steps, held inside what is known to be too small
-    // and too large.
+  return highest;
+}
+
+/// Finds the amount of an effect that has a size: of its change of the readings after the fitted numbers have
+/// taken from it what they can, in standard deviations.
+class Dosing {
+ public:
+  Dosing(const Hidden& h, double highest_tension, const BlindDesign& design)
+      : h_(h),
+        highest_tension_(highest_tension),
+        design_(design),
+        plain_(read_all({}, h, highest_tension, design)),
+        places_(h, highest_tension, design),
+        base_(places_.white(changes())),
+        qr_(base_) {}
+
+  /// The size rises steadily with the amount: proportional steps, held inside what is known to be too small
+  /// and too large. Returns the dose and its size.
+  std::pair<Perturbation, double> of(const std::string& effect, double size) const {
     double low = 0.0;
     double high = 1.0;
-    double a = one == "plasticity" ? 0.5 : 0.05;
+    double a = effect == "plasticity" ? 0.5 : 0.05;
     double reached = 0.0;
-    Perturbation dose{one, a};
+    Perturbation dose{effect, a};
     for (int k = 0; k < 20; ++k) {
       dose.amount = a;
-      force = read_all({dose}, h, highest_tension, sized);
-      reached = size_of(force);
+      reached = size_of(read(dose));
       if (std::abs(reached / size - 1.0) < 0.05 || (a >= 1.0 && reached < size)) break;
       (reached < size ? low : high) = a;
       a *= std::clamp(size / std::max(reached, 1e-9), 0.1, 10.0);
       if (a <= low || a >= high) a = high < 1.0 || reached > size ? 0.5 * (low + high) : 1.0;
     }
-    set.amount = doses.empty() ? dose.amount : set.amount;
-    set.size = doses.empty() ? reached : std::min(set.size, reached);
-    if (doses.empty()) std::tie(set.key, set.truth) = number_of(dose, h, highest_tension);
-    doses.push_back(dose);
+    return {dose, reached};
   }
-  if (doses.size() > 1 || design.readings_a_leg != sized.readings_a_leg)
-    force = read_all(doses, h, highest_tension, design);
+  [[nodiscard]] Eigen::VectorXd read(const Perturbation& dose) const {
+    return read_all({dose}, h_, highest_tension_, design_);
+  }
 
-  identification::Experiment& experiment = set.experiment;
-  experiment.file = "blind.toml";
-  experiment.title = fmt::format("blind set {}", seed);
-  experiment.free = {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N"};
-  if (design.length_deviation > 0.0) experiment.free.emplace_back("wire.length_mm");
+ private:
+  static constexpr double ratio = 1e-3;   // of a stiffness
+  static constexpr double longer = 1e-5;  // [m]
+
+  /// Of the readings by the fitted numbers.
+  [[nodiscard]] Eigen::MatrixXd changes() const {
+    Eigen::MatrixXd result(plain_.size(), design_.length_deviation > 0.0 ? 3 : 2);
+    for (Eigen::Index k = 0; k < result.cols(); ++k) {
+      Hidden other = h_;
+      if (k == 0) other.bending *= 1.0 + ratio;
+      if (k == 1) other.axial *= 1.0 + ratio;
+      if (k == 2) other.length += longer;
+      result.col(k) = read_all({}, other, highest_tension_, design_) - plain_;
+    }
+    return result;
+  }
+  /// Two steps of Gauss and Newton for the base numbers: a mount that gives moves EA by a tenth, and not
+  /// linearly. Beside a length it moves it by more, and they are taken to the end.
+  [[nodiscard]] double size_of(const Eigen::VectorXd& changed) const {
+    const int most_steps = base_.cols() > 2 ? 40 : 2;
+    Hidden fitted = h_;
+    Eigen::VectorXd left = changed - plain_;
+    for (int k = 0; k < most_steps; ++k) {
+      const Eigen::VectorXd step = qr_.solve(places_.white(left));
+      fitted.bending *= std::exp(std::clamp(ratio * step[0], -0.5, 0.5));
+      fitted.axial *= std::exp(std::clamp(ratio * step[1], -0.5, 0.5));
+      if (step.size() > 2) fitted.length += std::clamp(longer * step[2], -0.5 * mm, 0.5 * mm);
+      left = changed - read_all({}, fitted, highest_tension_, design_);
+      if (k > 1 && (base_ * step).norm() < 0.1 * sigma) break;
+    }
+    const Eigen::VectorXd white = places_.white(left);
+    return (white - base_ * qr_.solve(white)).norm() / sigma;
+  }
+
+  const Hidden& h_;
+  double highest_tension_;
+  const BlindDesign& design_;
+  Eigen::VectorXd plain_;
+  Places places_;
+  Eigen::MatrixXd base_;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+};
+
+coupling::PushProblem declared_test(const Push& p, const Hidden& h) {
+  coupling::PushProblem t;
+  t.wire.construction = wire::Construction::strand;
+  t.wire.diameter = diameter;
+  t.wire.length = length;
+  t.wire.youngs_modulus = modulus;
+  t.wire.poisson_ratio = 0.29;
+  t.wire.density = density;
+  t.wire.bending_stiffness_override = h.declared_bending;
+  t.wire.axial_stiffness_override = h.declared_axial;
+  t.mount.span = p.span;
+  if (h.clamp_compliance > 0.0) t.mount.rotational_stiffness = 1.0 / h.clamp_compliance;
+  t.pusher.radius = radius;
+  t.contact_position = p.position;
+  return t;
+}
+
+/// Writes the experiment: declared tests with noisy readings of these forces.
+void record(const Eigen::VectorXd& force, const std::vector<Push>& made, const Hidden& h,
+            const BlindDesign& design, std::mt19937& noise, identification::Experiment& experiment) {
   const auto readings_a_push =
       static_cast<Eigen::Index>(force.size()) / static_cast<Eigen::Index>(made.size());
   const auto records = static_cast<int>(made.size()) * design.replicates;
@@ -429,19 +456,7 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
     const Push& p = made[static_cast<std::size_t>(number / design.replicates)];
     identification::Series series;
     series.name = fmt::format("p{}", number + 1);
-    coupling::PushProblem& t = series.test;
-    t.wire.construction = wire::Construction::strand;
-    t.wire.diameter = diameter;
-    t.wire.length = length;
-    t.wire.youngs_modulus = modulus;
-    t.wire.poisson_ratio = 0.29;
-    t.wire.density = density;
-    t.wire.bending_stiffness_override = h.declared_bending;
-    t.wire.axial_stiffness_override = h.declared_axial;
-    t.mount.span = p.span;
-    if (h.clamp_compliance > 0.0) t.mount.rotational_stiffness = 1.0 / h.clamp_compliance;
-    t.pusher.radius = radius;
-    t.contact_position = p.position;
+    series.test = declared_test(p, h);
     identification::Readings readings;
     readings.displacement = travel_of(p, design.readings_a_leg);
     readings.time = time_of(p, design.readings_a_leg);
@@ -450,12 +465,59 @@ BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, c
     Eigen::Index row = readings_a_push * (number / design.replicates);
     for (std::size_t i = 0; i < readings.displacement.size(); ++i, ++row)
       readings.force.push_back(force[row] * (1.0 + off.smooth[i]) + off.white[i]);
-    t.travel = readings.displacement;
+    series.test.travel = readings.displacement;
     series.readings = readings;
     if (!replicate) series.force_sigma = sigma;
     series.position_sigma = design.position_deviation;
     experiment.series.push_back(std::move(series));
   }
+}
+
+}  // namespace
+
+BlindSet make_blind_set(const std::string& effect, double size, unsigned seed, const BlindDesign& design) {
+  const std::vector<std::string> inside = effect == "none" ? std::vector<std::string>() : effects_in(effect);
+  for (const std::string& one : inside) {
+    if (std::ranges::find(blind_effects(), one) == blind_effects().end())
+      throw std::invalid_argument("no blind effect " + one);
+  }
+  Hidden h = hidden_of(seed, design);
+  // A uniform natural curvature does nothing between rigid clamps.
+  const bool curved = std::ranges::find(inside, "natural_curvature") != inside.end();
+  h.clamp_compliance = curved ? 0.5 : 0.0;
+  const std::vector<Push> made = pushes_of(design);
+  const double highest_tension = highest_tension_of(made, h, design);
+  // Of tension, or of the buckled shape: amplitude 2 sqrt(slack / L) of the tangent, E of the strand.
+  const double slack = length - pushes[0].span;
+  h.highest_stress =
+      std::max(highest_tension * 4.0 / (std::numbers::pi * diameter * diameter),
+               0.5 * modulus * 0.5 * diameter * 4.0 * std::numbers::pi / length * std::sqrt(slack / length));
+  // An effect is of one size whatever the density of its readings.
+  BlindDesign sized = design;
+  sized.readings_a_leg = BlindDesign{}.readings_a_leg;
+  std::optional<Dosing> dosing;
+  if (!inside.empty()) dosing.emplace(h, highest_tension, sized);
+  BlindSet set;
+  set.effect = effect;
+  set.bending_stiffness = h.bending;
+  set.axial_stiffness = h.axial;
+  std::vector<Perturbation> doses;
+  for (const std::string& one : inside) {
+    const auto [dose, reached] = dosing->of(one, size);
+    set.amount = doses.empty() ? dose.amount : set.amount;
+    set.size = doses.empty() ? reached : std::min(set.size, reached);
+    if (doses.empty()) std::tie(set.key, set.truth) = number_of(dose, h, highest_tension);
+    doses.push_back(dose);
+  }
+  Eigen::VectorXd force = dosing ? dosing->read(doses.back()) : read_all({}, h, highest_tension, sized);
+  if (doses.size() > 1 || design.readings_a_leg != sized.readings_a_leg)
+    force = read_all(doses, h, highest_tension, design);
+  set.experiment.file = "blind.toml";
+  set.experiment.title = fmt::format("blind set {}", seed);
+  set.experiment.free = {"wire.bending_stiffness_Nm2", "wire.axial_stiffness_N"};
+  if (design.length_deviation > 0.0) set.experiment.free.emplace_back("wire.length_mm");
+  std::mt19937 noise = noise_of(effect, inside, size, seed);
+  record(force, made, h, design, noise, set.experiment);
   return set;
 }
 

@@ -35,6 +35,8 @@ struct ElasticaPush {
   ElasticaWire wire;
   double span = 0.0;  ///< distance of the mounts l [m], > 0; a span >= L gives a straight, taut wire
   ElasticaEnds ends = ElasticaEnds::clamped;
+  double mount_axial_compliance = 0.0;       ///< of each mount along the chord [m/N], >= 0
+  double mount_rotational_compliance = 0.0;  ///< of each clamp [rad/(N m)], >= 0
   ElasticaContact contact = ElasticaContact::sliding;
   ElasticaSide side = ElasticaSide::with_bulge;
   double position = 0.0;  ///< of the pusher's axis along the chord, s [m], in (0, l); not for material_point

@@ -20,109 +20,131 @@ double Shooting::critical() const {
   return ends_ == ElasticaEnds::clamped ? 4.0 * pi * pi : pi * pi;
 }
 
-System Shooting::assemble(const VectorXd& z, bool wrapped, const Demand& demand) const {
-  const Index n = size(wrapped);
-  System sys{VectorXd::Zero(n), MatrixXd::Zero(n, n)};
+PieceEnd Shooting::end_of(const VectorXd& z, Index piece, bool wrapped) const {
+  const bool left = piece < pieces_;
+  const Index at_force = left ? left_force() : right_force();
+  const double length = (left ? z[begin()] : 1.0 - z[end(wrapped)]) / pieces_;
+  const ElasticaFlow flow = elastica_flow(law_, section(z, piece), force(z, at_force), length);
+  PieceEnd result{flow.end, MatrixXd::Zero(4, size(wrapped))};
+  result.by(0, 4 * piece) = 1.0;
+  result.by(1, 4 * piece + 1) = 1.0;
+  const double rate[4] = {flow.rate.x, flow.rate.y, flow.rate.angle, flow.rate.moment};
+  for (Index i = 0; i < 4; ++i) {
+    const auto& s = flow.sensitivity[static_cast<std::size_t>(i)];
+    result.by(i, 4 * piece + 2) += s[0];
+    result.by(i, 4 * piece + 3) += s[1];
+    result.by(i, at_force) += s[2];
+    result.by(i, at_force + 1) += s[3];
+    result.by(i, left ? begin() : end(wrapped)) += (left ? 1.0 : -1.0) * rate[i] / pieces_;
+  }
+  return result;
+}
+
+void Shooting::add_piece_end(const VectorXd& z, Index piece, bool wrapped, System& sys) const {
+  const PieceEnd last = end_of(z, piece, wrapped);
+  if (wrapped && piece == pieces_ - 1) {
+    add_lift_off(z, last, sys);
+    return;
+  }
+  if (piece == 2 * pieces_ - 1) {
+    add_right_mount(z, last, sys);
+    return;
+  }
+  const double value[4] = {last.section.x, last.section.y, last.section.angle, last.section.moment};
+  for (Index i = 0; i < 4; ++i, ++sys.row) {
+    sys.residual[sys.row] = z[4 * (piece + 1) + i] - value[i];
+    sys.jacobian.row(sys.row) = -last.by.row(i);
+    sys.jacobian(sys.row, 4 * (piece + 1) + i) += 1.0;
+  }
+}
+
+void Shooting::add_left_mount(const VectorXd& z, System& sys) const {
+  sys.residual[sys.row] = z[0] - mount_axial_ * z[left_force()];
+  sys.jacobian(sys.row, 0) = 1.0;
+  sys.jacobian(sys.row++, left_force()) = -mount_axial_;
+  sys.hold(z, 1, 0.0);
+  if (ends_ == ElasticaEnds::pinned) {
+    sys.hold(z, 3, 0.0);
+    return;
+  }
+  sys.residual[sys.row] = z[2] - mount_rotational_ * z[3];
+  sys.jacobian(sys.row, 2) = 1.0;
+  sys.jacobian(sys.row++, 3) = -mount_rotational_;
+}
+
+void Shooting::add_right_mount(const VectorXd& z, const PieceEnd& end, System& sys) const {
+  sys.residual[sys.row] = end.section.x + mount_axial_ * z[right_force()] - span_;
+  sys.jacobian.row(sys.row) = end.by.row(0);
+  sys.jacobian(sys.row++, right_force()) += mount_axial_;
+  sys.residual[sys.row] = end.section.y;
+  sys.jacobian.row(sys.row++) = end.by.row(1);
+  if (ends_ == ElasticaEnds::pinned) {
+    sys.residual[sys.row] = end.section.moment;
+    sys.jacobian.row(sys.row++) = end.by.row(3);
+    return;
+  }
+  sys.residual[sys.row] = end.section.angle + mount_rotational_ * end.section.moment;
+  sys.jacobian.row(sys.row++) = end.by.row(2) + mount_rotational_ * end.by.row(3);
+}
+
+// Wrapped, end of the left side: r = c + sigma R nu, curvature of the cylinder. Tension and arc length,
+// completed by the start of the right side.
+void Shooting::add_lift_off(const VectorXd& z, const PieceEnd& end_left, System& sys) const {
   VectorXd& r = sys.residual;
   MatrixXd& J = sys.jacobian;
-  Index row = 0;
-  const auto linear = [&](Index column, double value) {
-    r[row] = z[column] - value;
-    J(row++, column) = 1.0;
-  };
+  Index& row = sys.row;
+  const ElasticaSection& last = end_left.section;
+  const MatrixXd& d_last = end_left.by;
+  const Index at_force = left_force();
+  const auto [tension, shear] = section_forces(force(z, at_force), last.angle);
+  const double c = std::cos(last.angle);
+  const double s = std::sin(last.angle);
+  r[row] = last.x + sigma_ * radius_ * s - position_;
+  J.row(row++) = d_last.row(0) + sigma_ * radius_ * c * d_last.row(2);
+  r[row] = last.y - sigma_ * radius_ * c - z[height(true)];
+  J.row(row) = d_last.row(1) + sigma_ * radius_ * s * d_last.row(2);
+  J(row++, height(true)) -= 1.0;
+  Eigen::RowVectorXd d_tension = shear * d_last.row(2);
+  d_tension[at_force] += c;
+  d_tension[at_force + 1] += s;
+  const double e = law_.compliance * tension;
+  r[row] = last.moment + law_.natural_curvature + sigma_ * (1.0 + e) / radius_;
+  J.row(row++) = d_last.row(3) + sigma_ * law_.compliance / radius_ * d_tension;
+  const ElasticaSection p = section(z, pieces_);
+  const auto right = section_forces(force(z, right_force()), p.angle);
+  r[row] = tension - right.tension;
+  J.row(row) = d_tension;
+  J(row, 4 * pieces_ + 2) -= right.shear;
+  J(row, right_force()) -= std::cos(p.angle);
+  J(row++, right_force() + 1) -= std::sin(p.angle);
+  const double arc = z[end(true)] - z[begin()];
+  r[row] = (1.0 + e) * arc + sigma_ * radius_ * (p.angle - last.angle);
+  J.row(row) = law_.compliance * arc * d_tension - sigma_ * radius_ * d_last.row(2);
+  J(row, 4 * pieces_ + 2) += sigma_ * radius_;
+  J(row, end(true)) += 1.0 + e;
+  J(row++, begin()) -= 1.0 + e;
+}
 
-  // Left mount: x = 0, y = 0, and angle or moment zero.
-  const Index fixed = ends_ == ElasticaEnds::clamped ? 2 : 3;
-  linear(0, 0.0);
-  linear(1, 0.0);
-  linear(fixed, 0.0);
+void Shooting::write_force_row(const VectorXd& z, double along_x, double along_y, System& sys) const {
+  const double fx = z[left_force()] - z[right_force()];
+  const double fy = z[left_force() + 1] - z[right_force() + 1];
+  sys.residual[sys.row] = along_x * fx + along_y * fy;
+  sys.jacobian(sys.row, left_force()) += along_x;
+  sys.jacobian(sys.row, right_force()) -= along_x;
+  sys.jacobian(sys.row, left_force() + 1) += along_y;
+  sys.jacobian(sys.row, right_force() + 1) -= along_y;
+}
 
-  // Pieces. The end of the last one on either side is kept with its derivative.
-  ElasticaSection last{};
-  MatrixXd d_last(4, n);
-  for (Index piece = 0; piece < 2 * pieces_; ++piece) {
-    const bool left = piece < pieces_;
-    const Index at_force = left ? left_force() : right_force();
-    const double length = (left ? z[begin()] : 1.0 - z[end(wrapped)]) / pieces_;
-    const ElasticaFlow flow = elastica_flow(law_, section(z, piece), force(z, at_force), length);
-    d_last.setZero();
-    d_last(0, 4 * piece) = 1.0;
-    d_last(1, 4 * piece + 1) = 1.0;
-    const double rate[4] = {flow.rate.x, flow.rate.y, flow.rate.angle, flow.rate.moment};
-    for (Index i = 0; i < 4; ++i) {
-      const auto& s = flow.sensitivity[static_cast<std::size_t>(i)];
-      d_last(i, 4 * piece + 2) += s[0];
-      d_last(i, 4 * piece + 3) += s[1];
-      d_last(i, at_force) += s[2];
-      d_last(i, at_force + 1) += s[3];
-      d_last(i, left ? begin() : end(wrapped)) += (left ? 1.0 : -1.0) * rate[i] / pieces_;
-    }
-    last = flow.end;
-    const double end_value[4] = {last.x, last.y, last.angle, last.moment};
-    const bool meets_next = piece != 2 * pieces_ - 1 && !(wrapped && piece == pieces_ - 1);
-    if (meets_next) {
-      for (Index i = 0; i < 4; ++i, ++row) {
-        r[row] = z[4 * (piece + 1) + i] - end_value[i];
-        J.row(row) = -d_last.row(i);
-        J(row, 4 * (piece + 1) + i) += 1.0;
-      }
-    } else if (piece == 2 * pieces_ - 1) {
-      // Right mount.
-      const double wanted[3] = {span_, 0.0, 0.0};
-      const Index which[3] = {0, 1, fixed};
-      for (int i = 0; i < 3; ++i, ++row) {
-        r[row] = end_value[which[i]] - wanted[i];
-        J.row(row) = d_last.row(which[i]);
-      }
-    } else {
-      // Wrapped, end of the left side: r = c + sigma R nu, curvature of the cylinder.
-      const auto [tension, shear] = section_forces(force(z, at_force), last.angle);
-      const double c = std::cos(last.angle);
-      const double s = std::sin(last.angle);
-      r[row] = last.x + sigma_ * radius_ * s - position_;
-      J.row(row++) = d_last.row(0) + sigma_ * radius_ * c * d_last.row(2);
-      r[row] = last.y - sigma_ * radius_ * c - z[height(true)];
-      J.row(row) = d_last.row(1) + sigma_ * radius_ * s * d_last.row(2);
-      J(row++, height(true)) -= 1.0;
-      Eigen::RowVectorXd d_tension = shear * d_last.row(2);
-      d_tension[at_force] += c;
-      d_tension[at_force + 1] += s;
-      const double e = law_.compliance * tension;
-      r[row] = last.moment + law_.natural_curvature + sigma_ * (1.0 + e) / radius_;
-      J.row(row++) = d_last.row(3) + sigma_ * law_.compliance / radius_ * d_tension;
-      // Tension and arc length, completed by the start of the right side.
-      const ElasticaSection p = section(z, pieces_);
-      const auto right = section_forces(force(z, right_force()), p.angle);
-      r[row] = tension - right.tension;
-      J.row(row) = d_tension;
-      J(row, 4 * pieces_ + 2) -= right.shear;
-      J(row, right_force()) -= std::cos(p.angle);
-      J(row++, right_force() + 1) -= std::sin(p.angle);
-      const double arc = z[end(true)] - z[begin()];
-      r[row] = (1.0 + e) * arc + sigma_ * radius_ * (p.angle - last.angle);
-      J.row(row) = law_.compliance * arc * d_tension - sigma_ * radius_ * d_last.row(2);
-      J(row, 4 * pieces_ + 2) += sigma_ * radius_;
-      J(row, end(true)) += 1.0 + e;
-      J(row++, begin()) -= 1.0 + e;
-    }
-  }
-
-  // Contact at the start of the right side.
+void Shooting::add_contact(const VectorXd& z, bool wrapped, Control control, System& sys) const {
+  VectorXd& r = sys.residual;
+  MatrixXd& J = sys.jacobian;
+  Index& row = sys.row;
   const ElasticaSection p = section(z, pieces_);
   const Index at = 4 * pieces_;
   const double c = std::cos(p.angle);
   const double s = std::sin(p.angle);
-  const double fx = z[left_force()] - z[right_force()];
-  const double fy = z[left_force() + 1] - z[right_force() + 1];
-  const auto force_row = [&](double along_x, double along_y) {
-    r[row] = along_x * fx + along_y * fy;
-    J(row, left_force()) += along_x;
-    J(row, right_force()) -= along_x;
-    J(row, left_force() + 1) += along_y;
-    J(row, right_force() + 1) -= along_y;
-  };
   if (contact_ == ElasticaContact::material_point) {
-    linear(begin(), material_);
+    sys.hold(z, begin(), material_);
   } else {
     r[row] = p.x + sigma_ * radius_ * s - position_;
     J(row, at) = 1.0;
@@ -141,31 +163,44 @@ System Shooting::assemble(const VectorXd& z, bool wrapped, const Demand& demand)
     J(row, at + 2) = factor * shear;
     J(row, right_force()) = factor * c;
     J(row++, right_force() + 1) = factor * s;
-  } else if (demand.control == Control::no_force || contact_ == ElasticaContact::material_point) {
-    force_row(1.0, 0.0);
+  } else if (control == Control::no_force || contact_ == ElasticaContact::material_point) {
+    write_force_row(z, 1.0, 0.0, sys);
     ++row;
   } else if (contact_ == ElasticaContact::sticking) {
-    linear(begin(), material_);
+    sys.hold(z, begin(), material_);
   } else {
     // f . t - slope sigma f . nu = 0 with nu = (-s, c).
     const double k = slope_ * sigma_;
-    force_row(c + k * s, s - k * c);
+    const double fx = z[left_force()] - z[right_force()];
+    const double fy = z[left_force() + 1] - z[right_force() + 1];
+    write_force_row(z, c + k * s, s - k * c, sys);
     J(row++, at + 2) = fx * (-s + k * c) + fy * (c + k * s);
   }
+}
 
+void Shooting::add_demand(const VectorXd& z, bool wrapped, const Demand& demand, System& sys) const {
   switch (demand.control) {
     case Control::no_force:
-      force_row(0.0, 1.0);
+      write_force_row(z, 0.0, 1.0, sys);
       break;
     case Control::height:
-      r[row] = z[height(wrapped)] - demand.height;
-      J(row, height(wrapped)) = 1.0;
+      sys.residual[sys.row] = z[height(wrapped)] - demand.height;
+      sys.jacobian(sys.row, height(wrapped)) = 1.0;
       break;
     case Control::arc_length:
-      r[row] = demand.direction.dot(z - demand.origin) - demand.step;
-      J.row(row) = demand.direction.transpose();
+      sys.residual[sys.row] = demand.direction.dot(z - demand.origin) - demand.step;
+      sys.jacobian.row(sys.row) = demand.direction.transpose();
       break;
   }
+}
+
+System Shooting::assemble(const VectorXd& z, bool wrapped, const Demand& demand) const {
+  const Index n = size(wrapped);
+  System sys{VectorXd::Zero(n), MatrixXd::Zero(n, n), 0};
+  add_left_mount(z, sys);
+  for (Index piece = 0; piece < 2 * pieces_; ++piece) add_piece_end(z, piece, wrapped, sys);
+  add_contact(z, wrapped, demand.control, sys);
+  add_demand(z, wrapped, demand, sys);
   return sys;
 }
 

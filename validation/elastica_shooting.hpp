@@ -29,6 +29,19 @@ struct Demand {
 struct System {
   VectorXd residual;
   MatrixXd jacobian;
+  Index row = 0;  ///< the next one to be written
+
+  /// z[column] = value.
+  void hold(const VectorXd& z, Index column, double value) {
+    residual[row] = z[column] - value;
+    jacobian(row++, column) = 1.0;
+  }
+};
+
+/// The section at the end of a piece, with its derivatives by z: rows x, y, angle, moment.
+struct PieceEnd {
+  ElasticaSection section{};
+  MatrixXd by;
 };
 
 // Unknowns z, dimensionless: the sections at the start of every piece (left side, then right side), n on the
@@ -49,6 +62,8 @@ class Shooting {
     const ElasticaWire& w = problem.wire;
     law_.compliance = w.bending_stiffness / (w.axial_stiffness * w.length * w.length);
     law_.natural_curvature = w.natural_curvature * w.length;
+    mount_axial_ = problem.mount_axial_compliance * w.bending_stiffness / (w.length * w.length * w.length);
+    mount_rotational_ = problem.mount_rotational_compliance * w.bending_stiffness / w.length;
   }
 
   /// Number of unknowns and of equations; `wrapped`: the wire lies on the pusher over an arc.
@@ -94,6 +109,19 @@ class Shooting {
   [[nodiscard]] numerics::SolveReport start(VectorXd& z);
 
  private:
+  /// x = c n_x, y = 0, and angle = c_r M or moment zero.
+  void add_left_mount(const VectorXd& z, System& sys) const;
+  /// x = span - c n_x, y = 0, and angle = -c_r M or moment zero.
+  void add_right_mount(const VectorXd& z, const PieceEnd& end, System& sys) const;
+  [[nodiscard]] PieceEnd end_of(const VectorXd& z, Index piece, bool wrapped) const;
+  /// What a piece meets: the next one, the right mount, or the cylinder that the wire wraps.
+  void add_piece_end(const VectorXd& z, Index piece, bool wrapped, System& sys) const;
+  void add_lift_off(const VectorXd& z, const PieceEnd& end, System& sys) const;
+  /// Contact at the start of the right side.
+  void add_contact(const VectorXd& z, bool wrapped, Control control, System& sys) const;
+  /// along_x f_x + along_y f_y = 0 of the force on the pusher, in the present row.
+  void write_force_row(const VectorXd& z, double along_x, double along_y, System& sys) const;
+  void add_demand(const VectorXd& z, bool wrapped, const Demand& demand, System& sys) const;
   [[nodiscard]] VectorXd buckled_guess(double excess) const;
   [[nodiscard]] VectorXd straight_guess() const;
   /// Buckling load of the straight wire.
@@ -111,6 +139,7 @@ class Shooting {
   double radius_;
   double slope_;
   double material_;  // contact's arc length, when it is given or has been found by the first touch
+  double mount_axial_ = 0.0, mount_rotational_ = 0.0;  // compliances over those of the wire, L^3/EI and L/EI
   ElasticaLaw law_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "base/units.hpp"
 #include "coupling/statics/push_solver.hpp"
+#include "validation/blind_push.hpp"
 #include "validation/closed_forms.hpp"
 #include "validation/declared_wire.hpp"
 #include "validation/elastica.hpp"
@@ -23,6 +24,7 @@ using coupling::PushProblem;
 using std::numbers::pi;
 
 const char* const multiple_shooting = "planar extensible elastica, multiple shooting";
+const char* const by_collocation = "planar extensible elastica, collocation";
 
 /// The same with the axial stiffness raised a thousandfold: inextensible to 1e-6 of a strain.
 PushProblem stiffened(PushProblem test) {
@@ -150,6 +152,48 @@ std::vector<Row> elastica_rows() {
                         fmt::format("force, {} at {:g} mm, travel {:g} mm",
                                     radius > 0.0 ? "cylinder" : "knife edge", position, test.travel[i] / mm),
                         "N", multiple_shooting, Kind::independent_code, reference[i].force, value,
+                        Limit::relative(1e-4)});
+      }
+    }
+  }
+  return rows;
+}
+
+/// The declared wire between mounts that give as the published fits ask for, as far as they may reach.
+std::vector<Row> giving_mount_rows() {
+  const char* group = "Declared wire, mounts that give";
+  constexpr double axial = 1.8e-5, rotational = 1.6;  // compliances [m/N], [rad/(N m)]
+  std::vector<Row> rows;
+  for (const double radius : {0.0, 6.0}) {
+    for (const double position : {40.0, 65.0, 90.0}) {
+      PushProblem test = declared_wire(position * mm, radius * mm);
+      test.mount.translational_stiffness = 1.0 / axial;
+      test.mount.rotational_stiffness = 1.0 / rotational;
+      test.travel = {2.0 * mm, 6.0 * mm, 10.0 * mm, 14.0 * mm};
+      const coupling::ExtrapolatedCurve result = coupling::solve_push_extrapolated(test, fine());
+      ElasticaPush elastica = elastica_of(test);
+      elastica.mount_axial_compliance = axial;
+      elastica.mount_rotational_compliance = rotational;
+      const std::vector<ElasticaState> shot = push_path(elastica, test.travel);
+      BlindWire wire;
+      wire.length = elastica.wire.length;
+      wire.span = elastica.span;
+      wire.bending_stiffness = elastica.wire.bending_stiffness;
+      wire.axial_stiffness = elastica.wire.axial_stiffness;
+      wire.position = elastica.position;
+      wire.radius = elastica.radius;
+      wire.mount_axial_compliance = axial;
+      wire.mount_rotational_compliance = rotational;
+      const std::vector<BlindReading> collocated = blind_push(wire, test.travel);
+      for (std::size_t i = 0; i < test.travel.size(); ++i) {
+        const double value = i < result.curve.points.size() ? result.curve.points[i].force : not_computed;
+        const std::string place =
+            fmt::format("force, {} at {:g} mm, travel {:g} mm", radius > 0.0 ? "cylinder" : "knife edge",
+                        position, test.travel[i] / mm);
+        const bool reached = i < shot.size() && shot[i].report.usable();
+        rows.push_back({group, place, "N", multiple_shooting, Kind::independent_code,
+                        reached ? shot[i].force : not_computed, value, Limit::relative(1e-4)});
+        rows.push_back({group, place, "N", by_collocation, Kind::independent_code, collocated[i].force, value,
                         Limit::relative(1e-4)});
       }
     }
@@ -339,6 +383,7 @@ std::vector<Check> static_wire_checks() {
   return {{"buckled shape", buckled_shape_rows},
           {"material mid-point", material_point_rows},
           {"push on the declared wire", elastica_rows},
+          {"push between mounts that give", giving_mount_rows},
           {"push on a soft wire that wraps the pusher", wrapped_rows},
           {"shallow limit, outward", shallow_outward_rows},
           {"shallow limit, inward", shallow_inward_rows},

@@ -41,9 +41,12 @@ struct ReproducedModel {
 
 /// The leading explanation of published fits, fitted again at its ranges and number of readings.
 struct RefittedLeader {
-  std::string model;
-  double p = 1.0;                        ///< SummaryStatistics::p there
-  std::map<std::string, double> values;  ///< by key, in the unit of the key
+  std::string model, meaning;                     ///< "mounts_give_and_turn", "the mounts give way and turn"
+  int readings = 0;                               ///< of each series
+  double p = 1.0;                                 ///< SummaryStatistics::p there
+  std::map<std::string, double> values;           ///< by key, in the unit of the key
+  identification::Experiment experiment;          ///< the declared test of this explanation, over its ranges
+  std::vector<identification::Setting> settings;  ///< what is fitted of it
 };
 
 /// What `snare reproduce` computes. A run that was interrupted has fewer models, no trace, no map.

@@ -83,64 +83,64 @@ std::vector<SlidingContact> make_contacts(const PushProblem& test, const wire::M
   return contacts;
 }
 
-PushSetup prepare_push(const PushProblem& test, int edges, double grading, int coarsening) {
+namespace {
+
+/// The mesh of a push; grading < 0: as boundary layers at the highest tension of interest ask for.
+wire::MaterialMesh push_mesh(const PushProblem& test, int edges, double grading, int coarsening) {
   const double length = test.wire.length;
   const double fraction = test.contact_position / test.mount.span;
-  const double ei = test.wire.bending_stiffness();
-  const double ea = test.wire.axial_stiffness();
-  wire::MaterialMesh mesh = wire::make_mesh(edges, fraction, 0.0);
   if (grading < 0.0) {
+    const int contact = wire::make_mesh(edges, fraction, 0.0).contact_vertex();
     constexpr double strain = 5e-3;  // about where steel wire yields: the highest tension of interest
-    const double layer = std::sqrt(ei / (strain * ea));
-    const double left = wire::grading_for_layer(layer, fraction * length, mesh.contact_vertex());
-    const double right =
-        wire::grading_for_layer(layer, (1.0 - fraction) * length, edges - mesh.contact_vertex());
+    const double layer = std::sqrt(test.wire.bending_stiffness() / (strain * test.wire.axial_stiffness()));
+    const double left = wire::grading_for_layer(layer, fraction * length, contact);
+    const double right = wire::grading_for_layer(layer, (1.0 - fraction) * length, edges - contact);
     grading = std::max(left, right);
   }
-  mesh = wire::make_mesh(edges, fraction, grading);
-  if (coarsening > 1) mesh = mesh.coarsened(coarsening);
+  const wire::MaterialMesh mesh = wire::make_mesh(edges, fraction, grading);
+  return coarsening > 1 ? mesh.coarsened(coarsening) : mesh;
+}
 
-  PushSetup setup;
-  setup.rod = std::make_unique<wire::PlanarRod>(mesh, rod_properties(test));
-  if (test.mount.kind == wire::MountKind::supports) {
-    if (test.wire.natural_curvature != 0.0) {
-      // It would touch the supports in a shape and a roll of its own.
-      setup.report.end(numerics::Termination::step_too_small,
-                       "a naturally curved wire on supports is not computed");
-      return setup;
-    }
-    const wire::Controls controls = initial_controls(test);
-    setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
-    setup.system->sliding = make_contacts(test, mesh, controls);
-    setup.system->compliance = test.pusher.compliance;
-    rest_on_supports(setup, controls);
-    return setup;
+void prepare_on_supports(const PushProblem& test, const wire::MaterialMesh& mesh, PushSetup& setup) {
+  if (test.wire.natural_curvature != 0.0) {
+    // It would touch the supports in a shape and a roll of its own.
+    setup.report.end(numerics::Termination::step_too_small,
+                     "a naturally curved wire on supports is not computed");
+    return;
   }
+  const wire::Controls controls = initial_controls(test);
+  setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
+  setup.system->sliding = make_contacts(test, mesh, controls);
+  setup.system->compliance = test.pusher.compliance;
+  rest_on_supports(setup, controls);
+}
 
-  wire::Controls controls = initial_controls(test);
-  // The loose wire is found between mounts that hold.
+/// The loose wire between mounts that hold. Of an unstable shape the contact vertex is moved to where the
+/// pusher comes, so that Newton's method does not wander off to another shape: `controls` say where it is.
+wire::LooseWire loose_wire(const PushProblem& test, const wire::MaterialMesh& mesh, wire::Controls& controls,
+                           int& iterations) {
   PushProblem holding = test;
   holding.mount.slip_tension.reset();
   const wire::PlanarRod held(mesh, rod_properties(holding));
   wire::LooseWire loose = wire::find_loose_wire(held, controls, test.bulge.mode);
-  setup.iterations = loose.report.iterations;
-  if (test.bulge.mode > 1 && loose.report.usable()) {
-    // An unstable shape: begin with the contact vertex just where the pusher comes, so that Newton's method
-    // does not wander off to another shape.
-    for (int i = 0; i < mesh.edges(); ++i) {
-      const double x0 = wire::vertex(loose.state, i).x();
-      const double x1 = wire::vertex(loose.state, i + 1).x();
-      if (x0 > test.contact_position || x1 < test.contact_position) continue;
-      const double part = (test.contact_position - x0) / (x1 - x0);
-      controls[1] = (1.0 - part) * mesh.coordinate(i, loose.state.controls) +
-                    part * mesh.coordinate(i + 1, loose.state.controls);
-    }
-    loose = wire::find_loose_wire(held, controls, test.bulge.mode);
-    setup.iterations += loose.report.iterations;
+  iterations = loose.report.iterations;
+  if (test.bulge.mode <= 1 || !loose.report.usable()) return loose;
+  for (int i = 0; i < mesh.edges(); ++i) {
+    const double x0 = wire::vertex(loose.state, i).x();
+    const double x1 = wire::vertex(loose.state, i + 1).x();
+    if (x0 > test.contact_position || x1 < test.contact_position) continue;
+    const double part = (test.contact_position - x0) / (x1 - x0);
+    controls[1] = (1.0 - part) * mesh.coordinate(i, loose.state.controls) +
+                  part * mesh.coordinate(i + 1, loose.state.controls);
   }
-  setup.report = static_cast<const numerics::SolveReport&>(loose.report);
-  if (!loose.report.usable()) return setup;
+  loose = wire::find_loose_wire(held, controls, test.bulge.mode);
+  iterations += loose.report.iterations;
+  return loose;
+}
 
+/// Brings the pusher to the loose wire without a force.
+void touch(const PushProblem& test, const wire::LooseWire& loose, const wire::Controls& controls,
+           const wire::MaterialMesh& mesh, PushSetup& setup) {
   setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
   PushSystem& system = *setup.system;
   system.sliding = make_contacts(test, mesh, controls);
@@ -157,17 +157,33 @@ PushSetup prepare_push(const PushProblem& test, int edges, double grading, int c
     if (system.mounts[k].feeds()) setup.start.border[system.mount_row(k)] = system.mounts[k].last;
   }
   numerics::PathWorkspace workspace;
-  const numerics::SolveReport touch = numerics::correct(system, setup.start, workspace, 50);
-  setup.iterations += touch.iterations;
-  setup.report = touch;
-  if (!touch.usable()) {
+  const numerics::SolveReport touched = numerics::correct(system, setup.start, workspace, 50);
+  setup.iterations += touched.iterations;
+  setup.report = touched;
+  if (!touched.usable()) {
     setup.report.message = "the pusher does not touch the wire in its initial shape";
-    return setup;
+    return;
   }
   double& gap = setup.start.border[system.pusher_rows().gap];
   pusher.centre += gap * pusher.approach();
   gap = 0.0;
   setup.natural_height = wire::vertex(system.state(setup.start), mesh.contact_vertex()).y();
+}
+
+}  // namespace
+
+PushSetup prepare_push(const PushProblem& test, int edges, double grading, int coarsening) {
+  const wire::MaterialMesh mesh = push_mesh(test, edges, grading, coarsening);
+  PushSetup setup;
+  setup.rod = std::make_unique<wire::PlanarRod>(mesh, rod_properties(test));
+  if (test.mount.kind == wire::MountKind::supports) {
+    prepare_on_supports(test, mesh, setup);
+    return setup;
+  }
+  wire::Controls controls = initial_controls(test);
+  const wire::LooseWire loose = loose_wire(test, mesh, controls, setup.iterations);
+  setup.report = static_cast<const numerics::SolveReport&>(loose.report);
+  if (loose.report.usable()) touch(test, loose, controls, mesh, setup);
   return setup;
 }
 

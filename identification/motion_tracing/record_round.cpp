@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <utility>
 
 namespace snare::identification {
 
@@ -145,155 +146,208 @@ bool out_of_step(const RecordData& data, const RecordFit& fit) {
   return fit.residual.squaredNorm() > good_part * good_part * moves;
 }
 
-RoundResult record_round(const RoundInput& in) {
-  RoundResult result;
-  std::vector<RecordEffect> asked;
-  std::vector<std::size_t> index;
-  for (std::size_t e = 0; e < in.effects.size(); ++e) {
-    if (std::find(in.selected.begin(), in.selected.end(), e) != in.selected.end()) continue;
-    asked.push_back(in.effects[e]);
-    index.push_back(e);
+namespace {
+
+/// A round of effects: scored, refitted, put in order, and one of them named.
+class EffectRound {
+ public:
+  explicit EffectRound(const RoundInput& in)
+      : in_(in), all_(out_of_step(in.data, in.current)), scores_(score_the_rest()) {
+    present_ = bic(in.data, scores_.noise, in.current);
   }
-  RecordScores scores = score_motion(in.model, in.data, in.current, {}, asked, in.significance);
-  std::vector<RecordCandidate>& candidates = result.round.candidates;
-  for (RecordScore& score : scores.scores) {
-    score.effect = index[score.effect];
-    candidates.emplace_back().score = std::move(score);
+
+  RoundResult named() {
+    if (candidates().empty() || !significant(candidates().front())) {
+      result_.round.reason = "no effect of the catalogue is significant";
+      return std::move(result_);
+    }
+    fits_.resize(candidates().size());
+    if (!refit_the_promising() || (all_ && !fit_the_best_further())) return std::move(result_);
+    put_in_order();
+    if (const RecordCandidate& best = candidates().front(); !may_be_named(0)) {
+      result_.round.reason = best.refitted
+                                 ? fmt::format("{}: {}", in_.effects[best.score.effect].label(), best.why_not)
+                                 : "no effect could be fitted";
+      return std::move(result_);
+    }
+    const auto [members, several] = members_of_the_best();
+    name(members, several);
+    fit_to_the_end();
+    return std::move(result_);
   }
-  const auto significant = [&](const RecordCandidate& c) {
-    return c.score.unobservable.empty() && c.score.adjusted_p < in.significance;
-  };
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [&](const RecordCandidate& a, const RecordCandidate& b) {
-                     if (significant(a) != significant(b)) return significant(a);
-                     return significant(a) ? a.score.fall > b.score.fall : a.score.p < b.score.p;
-                   });
-  if (candidates.empty() || !significant(candidates.front())) {
-    result.round.reason = "no effect of the catalogue is significant";
-    return result;
+
+ private:
+  std::vector<RecordCandidate>& candidates() { return result_.round.candidates; }
+  [[nodiscard]] bool significant(const RecordCandidate& c) const {
+    return c.score.unobservable.empty() && c.score.adjusted_p < in_.significance;
   }
-  std::vector<Refit> fits(candidates.size());
-  const double present = bic(in.data, scores.noise, in.current);
-  const double promise = candidates.front().score.fall;
-  std::size_t plausible = 0;
-  const bool all = out_of_step(in.data, in.current);
-  const auto take = [&](std::size_t k, RecordFit found) {
-    RecordCandidate& c = candidates[k];
-    const RecordFit& fit = fits[k].fit = std::move(found);
+  [[nodiscard]] bool may_be_named(std::size_t k) {
+    return candidates()[k].refitted && candidates()[k].why_not.empty();
+  }
+
+  /// Scores of the effects that are not selected; the candidates, the most promising first.
+  RecordScores score_the_rest() {
+    std::vector<RecordEffect> asked;
+    std::vector<std::size_t> index;
+    for (std::size_t e = 0; e < in_.effects.size(); ++e) {
+      if (std::ranges::find(in_.selected, e) != in_.selected.end()) continue;
+      asked.push_back(in_.effects[e]);
+      index.push_back(e);
+    }
+    RecordScores scores = score_motion(in_.model, in_.data, in_.current, {}, asked, in_.significance);
+    for (RecordScore& score : scores.scores) {
+      score.effect = index[score.effect];
+      candidates().emplace_back().score = std::move(score);
+    }
+    std::ranges::stable_sort(candidates(), [&](const RecordCandidate& a, const RecordCandidate& b) {
+      if (significant(a) != significant(b)) return significant(a);
+      return significant(a) ? a.score.fall > b.score.fall : a.score.p < b.score.p;
+    });
+    return scores;
+  }
+
+  void take(std::size_t k, RecordFit found) {
+    RecordCandidate& c = candidates()[k];
+    const RecordFit& fit = fits_[k].fit = std::move(found);
     if (fit.residual.size() == 0 || fit.covariance.size() == 0) return;
     c.refitted = true;
-    fits[k].chance = c.score.chance;
-    fits[k].readings = static_cast<double>(in.data.rows);
-    const std::vector<TracedNumber> numbers = traced_numbers(in.model, fit);
-    const auto own = static_cast<std::ptrdiff_t>(in.current.settings.size());  // behind those of the fit
+    fits_[k].chance = c.score.chance;
+    fits_[k].readings = static_cast<double>(in_.data.rows);
+    const std::vector<TracedNumber> numbers = traced_numbers(in_.model, fit);
+    const auto own = static_cast<std::ptrdiff_t>(in_.current.settings.size());  // behind those of the fit
     c.numbers.assign(numbers.begin() + own, numbers.end());
     c.settings.assign(fit.settings.begin() + own, fit.settings.end());
-    c.rmse = record_stage(in.model, in.data, fit, nullptr, {}).rmse;
-    c.delta_bic = bic(in.data, scores.noise, fit) - present;
-    const RecordEffect& effect = in.effects[c.score.effect];
+    c.rmse = record_stage(in_.model, in_.data, fit, nullptr, {}).rmse;
+    c.delta_bic = bic(in_.data, scores_.noise, fit) - present_;
+    const RecordEffect& effect = in_.effects[c.score.effect];
     const double value = c.settings.front().value;
     c.plausible = value >= effect.plausible_lower && value <= effect.plausible_upper;
-    c.why_not = objection(in, c, fit);
-  };
-  for (std::size_t k = 0; k < candidates.size() && (all || (k < most_tried && plausible < most_refits));
-       ++k) {
-    const RecordCandidate& c = candidates[k];
-    if (!significant(c) || (!all && plausible > 0 && c.score.fall < promising * promise)) break;
-    if (in.model.stopped()) return result;
-    take(k, refit(in, c.score));
-    if (c.refitted && c.plausible) ++plausible;
+    c.why_not = objection(in_, c, fit);
   }
-  if (all) {  // the way may be long: the best are compared where it ends
+
+  /// Of a fit that is out of step all are refitted that are significant. False: stopped.
+  bool refit_the_promising() {
+    const double promise = candidates().front().score.fall;
+    std::size_t plausible = 0;
+    for (std::size_t k = 0; k < candidates().size() && (all_ || (k < most_tried && plausible < most_refits));
+         ++k) {
+      const RecordCandidate& c = candidates()[k];
+      if (!significant(c) || (!all_ && plausible > 0 && c.score.fall < promising * promise)) break;
+      if (in_.model.stopped()) return false;
+      take(k, refit(in_, c.score));
+      if (c.refitted && c.plausible) ++plausible;
+    }
+    return true;
+  }
+
+  /// The way may be long: the best are compared where it ends. False: stopped.
+  bool fit_the_best_further() {
     std::vector<std::size_t> best;
-    for (std::size_t k = 0; k < candidates.size(); ++k)
-      if (candidates[k].refitted && candidates[k].plausible) best.push_back(k);
-    std::ranges::sort(best, {}, [&](std::size_t k) { return fits[k].criterion(); });
+    for (std::size_t k = 0; k < candidates().size(); ++k)
+      if (candidates()[k].refitted && candidates()[k].plausible) best.push_back(k);
+    std::ranges::sort(best, {}, [&](std::size_t k) { return fits_[k].criterion(); });
     best.resize(std::min(best.size(), most_refits));
     for (const std::size_t k : best) {
-      if (in.model.stopped()) return result;
+      if (in_.model.stopped()) return false;
       RecordFitOptions options;
-      options.progress = in.progress;
+      options.progress = in_.progress;
       options.derivatives = FitDerivatives::search;
-      options.first_jacobian = fits[k].fit.jacobian;
-      RecordFit further = fit_motion(in.model, in.data, fits[k].fit.settings, options);
-      if (further.chi2 < fits[k].fit.chi2) take(k, std::move(further));
+      options.first_jacobian = fits_[k].fit.jacobian;
+      RecordFit further = fit_motion(in_.model, in_.data, fits_[k].fit.settings, options);
+      if (further.chi2 < fits_[k].fit.chi2) take(k, std::move(further));
     }
+    return true;
   }
-  // Refitted ones by their misfit, those that may be named first.
-  std::vector<std::size_t> order(candidates.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const RecordCandidate &x = candidates[a], &y = candidates[b];
-    if (x.refitted != y.refitted) return x.refitted;
-    if (!x.refitted) return false;
-    if (x.why_not.empty() != y.why_not.empty()) return x.why_not.empty();
-    return fits[a].criterion() < fits[b].criterion();
-  });
-  const auto may_be_named = [&](std::size_t k) {
-    return candidates[k].refitted && candidates[k].why_not.empty();
-  };
-  for (std::size_t k = 1; k < order.size() && may_be_named(order[k]); ++k)
-    if (fits[order[k]].criterion() <= (1.0 + the_same) * fits[order[0]].criterion() &&
-        candidates[order[k]].score.effect < candidates[order[0]].score.effect)
-      std::swap(order[0], order[k]);
 
-  std::vector<RecordCandidate> sorted;
-  std::vector<Refit> sorted_fits;
-  for (const std::size_t k : order) {
-    sorted.push_back(std::move(candidates[k]));
-    sorted_fits.push_back(std::move(fits[k]));
+  /// Refitted ones by their misfit, those that may be named first.
+  void put_in_order() {
+    std::vector<std::size_t> order(candidates().size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+      const RecordCandidate &x = candidates()[a], &y = candidates()[b];
+      if (x.refitted != y.refitted) return x.refitted;
+      if (!x.refitted) return false;
+      if (x.why_not.empty() != y.why_not.empty()) return x.why_not.empty();
+      return fits_[a].criterion() < fits_[b].criterion();
+    });
+    for (std::size_t k = 1; k < order.size() && may_be_named(order[k]); ++k)
+      if (fits_[order[k]].criterion() <= (1.0 + the_same) * fits_[order[0]].criterion() &&
+          candidates()[order[k]].score.effect < candidates()[order[0]].score.effect)
+        std::swap(order[0], order[k]);
+    std::vector<RecordCandidate> sorted;
+    std::vector<Refit> sorted_fits;
+    for (const std::size_t k : order) {
+      sorted.push_back(std::move(candidates()[k]));
+      sorted_fits.push_back(std::move(fits_[k]));
+    }
+    candidates() = std::move(sorted);
+    fits_ = std::move(sorted_fits);
   }
-  candidates = std::move(sorted);
-  fits = std::move(sorted_fits);
-  if (const RecordCandidate& best = candidates.front(); !best.refitted || !best.why_not.empty()) {
-    result.round.reason = best.refitted
-                              ? fmt::format("{}: {}", in.effects[best.score.effect].label(), best.why_not)
-                              : "no effect could be fitted";
-    return result;
+
+  /// Those that the records do not tell from the best, and whether the fitted records left several.
+  std::pair<std::vector<std::size_t>, bool> members_of_the_best() {
+    std::vector<std::size_t> members{0}, of;
+    for (std::size_t k = 0; k < candidates().size(); ++k) {
+      of.push_back(candidates()[k].score.effect);
+      if (k > 0 && may_be_named(k) && !told_apart(in_.data, scores_.noise, fits_.front(), fits_[k]))
+        members.push_back(k);
+    }
+    const bool several = members.size() > 1;
+    if (in_.heldout && several) {
+      const std::vector<std::size_t> settled = settle(in_, scores_.noise, fits_, of, members);
+      for (const std::size_t k : members)
+        if (fits_[k].heldout.size() > 0)
+          candidates()[k].heldout_improves = fits_[k].heldout.squaredNorm() < in_.heldout_now;
+      if (!settled.empty()) members = settled;
+    }
+    return {members, several};
   }
-  std::vector<std::size_t> members{0}, of;
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const RecordCandidate& c = candidates[k];
-    of.push_back(c.score.effect);
-    if (k > 0 && c.refitted && c.why_not.empty() && !told_apart(in.data, scores.noise, fits.front(), fits[k]))
-      members.push_back(k);
-  }
-  const bool several = members.size() > 1;
-  if (in.heldout && several) {
-    const std::vector<std::size_t> settled = settle(in, scores.noise, fits, of, members);
+
+  /// Names the first of a class and puts it before all others.
+  void name(const std::vector<std::size_t>& members, bool several) {
+    RecordRound& round = result_.round;
+    round.classes.emplace_back();
     for (const std::size_t k : members)
-      if (fits[k].heldout.size() > 0)
-        candidates[k].heldout_improves = fits[k].heldout.squaredNorm() < in.heldout_now;
-    if (!settled.empty()) members = settled;
+      round.classes.front().push_back(in_.effects[candidates()[k].score.effect].label());
+    for (std::size_t k = 0; k < candidates().size(); ++k) {
+      RecordCandidate& c = candidates()[k];
+      const bool same = std::ranges::find(members, k) != members.end();
+      c.class_index = same ? 0 : round.classes.size();
+      if (!same) round.classes.push_back({in_.effects[c.score.effect].label()});
+    }
+    round.added = round.classes.front().front();
+    round.reason = members.size() > 1 ? "best of a class that these records cannot tell apart"
+                   : several ? "the records held out tell it from others that do as well in those fitted"
+                             : "explains most, and nothing else does as well";
+    const auto chosen = static_cast<std::ptrdiff_t>(members.front());
+    std::rotate(candidates().begin(), candidates().begin() + chosen, candidates().begin() + chosen + 1);
+    std::rotate(fits_.begin(), fits_.begin() + chosen, fits_.begin() + chosen + 1);
+    result_.added = candidates().front().score.effect;
+    result_.better = std::move(fits_.front().fit);
   }
-  const std::size_t chosen = members.front();
-  result.round.classes.emplace_back();
-  for (const std::size_t k : members)
-    result.round.classes.front().push_back(in.effects[candidates[k].score.effect].label());
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    RecordCandidate& c = candidates[k];
-    const bool same = std::find(members.begin(), members.end(), k) != members.end();
-    c.class_index = same ? 0 : result.round.classes.size();
-    if (!same) result.round.classes.push_back({in.effects[c.score.effect].label()});
+
+  /// And with the derivatives of its place.
+  void fit_to_the_end() {
+    if (in_.model.stopped()) return;
+    RecordFitOptions options;
+    options.progress = in_.progress;
+    options.first_jacobian = result_.better.jacobian;
+    RecordFit fit = fit_motion(in_.model, in_.data, result_.better.settings, options);
+    if (fit.chi2 <= result_.better.chi2) result_.better = std::move(fit);
   }
-  result.round.added = result.round.classes.front().front();
-  result.round.reason = members.size() > 1 ? "best of a class that these records cannot tell apart"
-                        : several ? "the records held out tell it from others that do as well in those fitted"
-                                  : "explains most, and nothing else does as well";
-  std::rotate(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(chosen),
-              candidates.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
-  std::rotate(fits.begin(), fits.begin() + static_cast<std::ptrdiff_t>(chosen),
-              fits.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
-  result.added = candidates.front().score.effect;
-  result.better = std::move(fits.front().fit);
-  if (!in.model.stopped()) {  // and with the derivatives of its place
-    RecordFitOptions to_the_end;
-    to_the_end.progress = in.progress;
-    to_the_end.first_jacobian = result.better.jacobian;
-    RecordFit fit = fit_motion(in.model, in.data, result.better.settings, to_the_end);
-    if (fit.chi2 <= result.better.chi2) result.better = std::move(fit);
-  }
-  return result;
+
+  const RoundInput& in_;
+  bool all_;  // the fit is out of step: every effect that is significant is refitted
+  RoundResult result_;
+  RecordScores scores_;
+  std::vector<Refit> fits_;
+  double present_ = 0.0;  // criterion of the model without any of them
+};
+
+}  // namespace
+
+RoundResult record_round(const RoundInput& in) {
+  return EffectRound(in).named();
 }
 
 }  // namespace snare::identification

@@ -6,6 +6,7 @@
 #include "identification/motion_tracing/record_findings.hpp"
 #include "identification/motion_tracing/record_round.hpp"
 #include "identification/motion_tracing/record_stage.hpp"
+#include "identification/records/record_rank.hpp"
 
 #include <fmt/format.h>
 
@@ -19,6 +20,7 @@ namespace {
 constexpr double usual_share = 0.01;  // of a channel's rms less its mean: an error below is called no error
 constexpr double like_noise = 0.002;  // p below which a residual is none
 constexpr int most_reweighings = 3;
+constexpr int most_restarts = 3;  // of a fit beside which chi2 falls
 
 /// Everything that is kept along the way.
 class Tracer {
@@ -46,7 +48,7 @@ class Tracer {
     trace_.findings = channel_findings(data_, {&declared.predictions});
     if (!go_on("base fit")) return end("interrupted before the base fit was finished");
     current_ = base_fit();
-    find_rank(model_, data_, current_);
+    settle();
     base_settings_ = current_.settings;
     trace_.fit_simulations = current_.simulations;
     trace_.fit_iterations = current_.iterations;
@@ -139,6 +141,7 @@ class Tracer {
             "to that in part only",
             record.name, length, slow->period, slow->of));
     }
+    if (!current_.lower.empty()) warn_of_lower();
     for (const TracedNumber& n : trace_.final.numbers) {
       const bool of_file = std::any_of(set_.free.begin(), set_.free.end(), [&](const FreeNumber& f) {
         return f.key == n.key && !(f.lower && *f.lower < 0.0);
@@ -149,6 +152,18 @@ class Tracer {
             "{} is not identifiable from these records: {:.4g} with a standard error of {:.4g} {}", n.key,
             n.value, n.stderr_, n.unit));
     }
+  }
+  void warn_of_lower() {
+    RecordFit there = current_;
+    there.settings = current_.lower;
+    std::string where;
+    for (const TracedNumber& n : traced_numbers(model_, there))
+      where += fmt::format("{}{} = {:.6g} {}", where.empty() ? "" : ", ", n.key, n.value, n.unit);
+    trace_.warnings.push_back(fmt::format(
+        "the fit has not ended at its least sum of squares, which is clearly lower at {}: its numbers and "
+        "intervals cannot be relied on; begin there{}",
+        where,
+        set_.method == FitMethod::nelder_mead ? ", take a smaller fit.simplex_change, or gauss_newton" : ""));
   }
   void reached() {
     if (!options_.reached) return;
@@ -207,6 +222,22 @@ class Tracer {
       fit.simulations += before;
     }
     return fit;
+  }
+
+  /// Asks which numbers of the present model the records determine. Where chi2 falls beside its answer a fit
+  /// has not ended and goes on from there; a simplex ends where it was told to.
+  void settle() {
+    for (int k = 0;; ++k) {
+      find_rank(model_, data_, current_);
+      const bool goes_on = !current_.lower.empty() && set_.method == FitMethod::gauss_newton;
+      if (!goes_on || k == most_restarts || stop_) return;
+      RecordFitOptions options;
+      options.progress = asked();
+      RecordFit lower = fit_motion(model_, data_, current_.lower, options);
+      if (!lower.report.usable() || lower.chi2 >= current_.chi2) return;
+      lower.simulations += current_.simulations;
+      current_ = std::move(lower);
+    }
   }
 
   /// A fitted model on the held-out records: what belongs to a record is fitted there, the rest stays.
@@ -480,7 +511,6 @@ class Tracer {
       rounds_of_.push_back(trace_.rounds.size() - 1);
       if (drop_needless()) kept.resize(1);  // the models along the way had what is dropped
       trace_.channel = trace_.effects[trace_.selected_effects.front()].channel;
-      find_rank(model_, data_, current_);
       trace_.final = stage(current_, {});
       judge();
       trace_.significant = true;
@@ -489,6 +519,11 @@ class Tracer {
       if (trace_.kind == VerdictKind::explained) break;
     }
     keep_what_carries_over(kept);
+    if (!trace_.selected.empty() && !stop_) {
+      settle();
+      trace_.final = stage(current_, {});
+      judge();
+    }
     if (trace_.kind == VerdictKind::not_explained) withdraw(base);
     if (trace_.kind == VerdictKind::partly_explained || trace_.kind == VerdictKind::not_explained)
       trace_.leftovers = leftovers(model_, data_, current_);

@@ -59,8 +59,10 @@ struct RecordFit {
   Eigen::MatrixXd jacobian;
   Eigen::MatrixXd covariance;  ///< of the numbers in their units, of residuals that are correlated
   Identifiability rank;        ///< which numbers the records determine; empty where find_rank() was not asked
-  double chi2 = 0.0;           ///< sum of squares of the residual
-  long simulations = 0;        ///< that it took
+  /// Where find_rank() met a sum of squares that is clearly lower: the answer is no minimum. Empty: nowhere.
+  std::vector<RecordSetting> lower;
+  double chi2 = 0.0;     ///< sum of squares of the residual [-]
+  long simulations = 0;  ///< that it took
   int iterations = 0;
   numerics::SolveReport report;
 };

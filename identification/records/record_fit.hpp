@@ -27,8 +27,4 @@ enum class Differences {
                                                  Differences differences = Differences::central,
                                                  double widen = 1.0);
 
-/// Fills `rank` of a usable fit with central derivatives, whose errors those by twice the step show. With
-/// null directions the covariance becomes that with one number of each held.                 theory.md (I.32)
-void find_rank(const RecordModel& model, const RecordData& data, RecordFit& fit);
-
 }  // namespace snare::identification

@@ -245,134 +245,161 @@ Drive drive_of(const TomlTable& table, const RobotJoint& joint) {
   return drive;
 }
 
-ArmDescription read(TomlDocument& document, const std::filesystem::path& file) {
-  ArmDescription description;
-  description.file = file;
-  const std::filesystem::path folder = file.parent_path();
-  const TomlTable root = document.root();
-  base::require_schema(root, "snare-arm/1");
-  description.title = root.text("title");
-  description.source = root.text_or("source", "");
-  Tree& tree = description.arm.tree;
-  if (root.has("gravity_m_s2")) {
-    const auto g = root.numbers("gravity_m_s2", 3, 3, Range::from(-1e6, 1e6));
-    if (g.size() == 3) tree.gravity = {g[0], g[1], g[2]};
+/// Reads an arm file. Without the arm's bodies nothing else in it has a meaning: their problems are reported
+/// alone.
+class ArmReader {
+ public:
+  ArmReader(TomlDocument& document, const std::filesystem::path& file)
+      : document_(document), folder_(file.parent_path()), root_(document.root()) {
+    arm_.file = file;
   }
 
-  // The base, the arm on it, and what the arm carries.
-  int mount = 0;
-  RootJoint arm_root = RootJoint::fixed;
-  if (root.has("base")) {
-    const TomlTable base = root.table("base");
-    const auto kind = base.choice("kind", base_kinds);
-    const RootJoint joint = kind == BaseKind::free ? RootJoint::free : RootJoint::fixed;
-    if (base.has("urdf")) {
-      const auto robot = robot_of(document, base, folder, description);
-      if (robot && put(base, tree, 0, joint, *robot)) mount = frame_of(base, "frame", tree);
-      if (!robot) static_cast<void>(base.text("frame"));
+  ArmDescription read() {
+    base::require_schema(root_, "snare-arm/1");
+    arm_.title = root_.text("title");
+    arm_.source = root_.text_or("source", "");
+    if (root_.has("gravity_m_s2")) {
+      const auto g = root_.numbers("gravity_m_s2", 3, 3, Range::from(-1e6, 1e6));
+      if (g.size() == 3) tree().gravity = {g[0], g[1], g[2]};
+    }
+    read_bodies();
+    const TomlTable joints = root_.table("joint"), common = root_.table("every_joint");
+    if (whole_) {
+      add_motors(joints, common);
+      add_hinges();
+      if (arm_.joints.empty())
+        root_.fail("urdf", "must have at least one revolute, continuous or prismatic joint");
+    }
+    for (const TomlTable& pose : root_.tables("pose")) arm_.poses.push_back(pose_of(pose));
+    document_.finish();
+    return std::move(arm_);
+  }
+
+ private:
+  Tree& tree() { return arm_.arm.tree; }
+
+  /// The base, the arm on it, and what the arm carries.
+  void read_bodies() {
+    int mount = 0;
+    RootJoint arm_root = RootJoint::fixed;
+    if (root_.has("base")) {
+      const TomlTable base = root_.table("base");
+      const auto kind = base.choice("kind", base_kinds);
+      const RootJoint joint = kind == BaseKind::free ? RootJoint::free : RootJoint::fixed;
+      if (base.has("urdf")) {
+        const auto robot = robot_of(document_, base, folder_, arm_);
+        if (robot && put(base, tree(), 0, joint, *robot)) mount = frame_of(base, "frame", tree());
+        if (!robot) static_cast<void>(base.text("frame"));
+      } else {
+        arm_root = joint;
+      }
+    }
+    const std::string urdf = root_.text("urdf");
+    if (urdf.empty()) throw InputError({arm_.file.string(), 0, "urdf", "", "missing, must name a URDF file"});
+    robot_ = read_urdf(folder_ / urdf);
+    take_warnings(robot_, urdf, arm_);
+    change_links(root_.table("link"), robot_);
+    flexures_ = bend_links(root_.table("link"), robot_);
+    arm_.input += robot_.text + document_.canonical();
+    whole_ = mount >= 0 && put(root_, tree(), mount, arm_root, robot_);
+    if (whole_) {
+      for (const RobotLink& link : robot_.links) arm_.arm_mass += link.inertia.mass;
+    }
+    for (const TomlTable& load : root_.tables("payload")) {
+      const auto carried = robot_of(document_, load, folder_, arm_);
+      const int frame = whole_ ? frame_of(load, "on", tree()) : (static_cast<void>(load.text("on")), -1);
+      if (carried && frame >= 0) static_cast<void>(put(load, tree(), frame, RootJoint::fixed, *carried));
+    }
+    // The tip may be a link of what the arm carries.
+    if (whole_) {
+      arm_.tip = frame_of(root_, "tip", tree());
     } else {
-      arm_root = joint;
+      static_cast<void>(root_.text("tip"));
     }
   }
-  // Without its bodies nothing else in the file has a meaning: their problems are reported alone.
-  const std::string urdf = root.text("urdf");
-  if (urdf.empty()) throw InputError({file.string(), 0, "urdf", "", "missing, must name a URDF file"});
-  std::optional<RobotDescription> robot = read_urdf(folder / urdf);
-  take_warnings(*robot, urdf, description);
-  change_links(root.table("link"), *robot);
-  const std::vector<Flexure> flexures = bend_links(root.table("link"), *robot);
-  description.input += robot->text + document.canonical();
-  const bool whole = mount >= 0 && put(root, tree, mount, arm_root, *robot);
-  if (whole) {
-    for (const RobotLink& link : robot->links) description.arm_mass += link.inertia.mass;
-  }
-  for (const TomlTable& load : root.tables("payload")) {
-    const auto carried = robot_of(document, load, folder, description);
-    const int frame = whole ? frame_of(load, "on", tree) : (static_cast<void>(load.text("on")), -1);
-    if (carried && frame >= 0) static_cast<void>(put(load, tree, frame, RootJoint::fixed, *carried));
-  }
-  // The tip may be a link of what the arm carries.
-  if (whole) {
-    description.tip = frame_of(root, "tip", tree);
-  } else {
-    static_cast<void>(root.text("tip"));
-  }
 
-  // Motors, in the order of the arm's moving joints.
-  const TomlTable joints = root.table("joint");
-  const TomlTable common = root.table("every_joint");
-  if (whole) {
-    for (const RobotJoint& joint : robot->joints) {
-      const bool hinge = std::ranges::any_of(flexures, [&](const Flexure& flexure) {
+  /// Motors, in the order of the arm's moving joints.
+  void add_motors(const TomlTable& joints, const TomlTable& common) {
+    for (const RobotJoint& joint : robot_.joints) {
+      const bool hinge = std::ranges::any_of(flexures_, [&](const Flexure& flexure) {
         return std::ranges::count(flexure.hinges, joint.name) > 0;
       });
       if (!joint.kind || *joint.kind == JointKind::free || hinge) continue;
       const TomlTable own = joints.table(joint.name).over(common);
       ElasticJoint elastic;
       elastic.name = joint.name;
-      const auto bent = std::ranges::find(flexures, joint.child, &Flexure::root);
-      elastic.link = bent == flexures.end() ? joint.child : bent->link;
-      elastic.body = tree.frame(tree.find_frame(joint.child)).body;
+      const auto bent = std::ranges::find(flexures_, joint.child, &Flexure::root);
+      elastic.link = bent == flexures_.end() ? joint.child : bent->link;
+      elastic.body = tree().frame(tree().find_frame(joint.child)).body;
       elastic.motor_inertia = motor_inertia_of(own);
       if (const auto law = law_of(own)) elastic.spring = *law;
       elastic.friction = friction_of(own, joint);
       elastic.back_drive = own.number_or("back_drive_Nm", 0.0, not_negative);
-      description.drives.push_back(drive_of(own, joint));
-      description.arm.joints.push_back(elastic);
-      description.joints.push_back(joint);
+      arm_.drives.push_back(drive_of(own, joint));
+      arm_.arm.joints.push_back(elastic);
+      arm_.joints.push_back(joint);
     }
-    for (const Flexure& flexure : flexures) {
+  }
+
+  /// Hinges of links that bend: joints whose motors never move.
+  void add_hinges() {
+    for (const Flexure& flexure : flexures_) {
       for (const std::string& name : flexure.hinges) {
-        const auto hinge = std::ranges::find(robot->joints, name, &RobotJoint::name);
+        const auto hinge = std::ranges::find(robot_.joints, name, &RobotJoint::name);
         ElasticJoint elastic;
         elastic.name = name;
         elastic.link = flexure.link;
-        elastic.body = tree.frame(tree.find_frame(hinge->child)).body;
-        elastic.motor_inertia = 1.0;  // it never moves
+        elastic.body = tree().frame(tree().find_frame(hinge->child)).body;
+        elastic.motor_inertia = 1.0;
         elastic.spring = DeflectionLaw::linear(flexure.stiffness, flexure.damping);
         elastic.flexure = true;
-        description.arm.joints.push_back(elastic);
-        description.drives.push_back(Drive::locked());
+        arm_.arm.joints.push_back(elastic);
+        arm_.drives.push_back(Drive::locked());
       }
     }
   }
-  const std::size_t count = description.joints.size();
-  if (whole && count == 0)
-    root.fail("urdf", "must have at least one revolute, continuous or prismatic joint");
-  for (const TomlTable& pose : root.tables("pose")) {
+
+  ArmPose pose_of(const TomlTable& pose) {
     ArmPose one;
     one.name = pose.text("name");
-    if (whole) {
-      const auto angles = pose.numbers("angles_deg", count, count, Range::from(-720.0, 720.0), degree);
-      one.angles = description.with_flexures(
-          Eigen::Map<const Eigen::VectorXd>(angles.data(), static_cast<Eigen::Index>(angles.size())));
-      for (std::size_t k = 0; k < angles.size(); ++k) {
-        const RobotJoint& joint = description.joints[k];
-        if (angles[k] >= joint.lower - 1e-9 && angles[k] <= joint.upper + 1e-9) continue;
-        pose.fail_element("angles_deg", k,
-                          fmt::format("must be {:.4g} to {:.4g}, the limits of {}", joint.lower / degree,
-                                      joint.upper / degree, joint.name));
-      }
-    } else {
+    if (!whole_) {
       static_cast<void>(pose.has("angles_deg"));
+      return one;
     }
-    description.poses.push_back(one);
+    const std::size_t count = arm_.joints.size();
+    const auto angles = pose.numbers("angles_deg", count, count, Range::from(-720.0, 720.0), degree);
+    one.angles = arm_.with_flexures(
+        Eigen::Map<const Eigen::VectorXd>(angles.data(), static_cast<Eigen::Index>(angles.size())));
+    for (std::size_t k = 0; k < angles.size(); ++k) {
+      const RobotJoint& joint = arm_.joints[k];
+      if (angles[k] >= joint.lower - 1e-9 && angles[k] <= joint.upper + 1e-9) continue;
+      pose.fail_element("angles_deg", k,
+                        fmt::format("must be {:.4g} to {:.4g}, the limits of {}", joint.lower / degree,
+                                    joint.upper / degree, joint.name));
+    }
+    return one;
   }
-  document.finish();
-  return description;
-}
+
+  TomlDocument& document_;
+  std::filesystem::path folder_;
+  TomlTable root_;
+  ArmDescription arm_;
+  RobotDescription robot_;
+  std::vector<Flexure> flexures_;
+  bool whole_ = false;  // the arm's bodies are there
+};
 
 }  // namespace
 
 ArmDescription read_arm(const std::filesystem::path& file, const std::vector<base::Override>& overrides) {
   TomlDocument document(file, overrides);
-  return read(document, file);
+  return ArmReader(document, file).read();
 }
 
 ArmDescription parse_arm(const std::filesystem::path& file, const std::string& text,
                          const std::vector<base::Override>& overrides) {
   TomlDocument document(file.string(), text, overrides);
-  return read(document, file);
+  return ArmReader(document, file).read();
 }
 
 Eigen::VectorXd ArmDescription::with_flexures(const Eigen::VectorXd& angles) const {

@@ -327,40 +327,43 @@ void ElasticArmPart::jacobian(const numerics::DaePoint& point, double c, std::ve
     }
   }
 
-  for (int k = 0; k < arm_.motors(); ++k) {
-    const Terms t = terms(point.time, point.y, k);
-    const JointSlots& s = joint_slots_[at(k)];
-    const auto add = [&values](int index, double value) { values[at(index)] += value; };
-    // Balance of the link: + tau.
-    add(s.link.q, t.torque_by_deflection);
-    add(s.link.v, t.gear_damping);
-    add(s.link.angle, -t.torque_by_deflection);
-    add(s.link.rate, -t.gear_damping);
-    // Balance of the motor: Im qm'' + losses - tau - drive, or Im (qm' - r').
-    const bool on_course = drives_[at(k)].mode == DriveMode::course;
-    add(s.motor_rate.rate, (on_course ? 1.0 : c) * arm_.joints[at(k)].motor_inertia);
-    if (!fixed(k) && !on_course) {
-      add(s.motor_rate.q, t.loss_by_deflection - t.torque_by_deflection);
-      add(s.motor_rate.v, -t.gear_damping);
-      add(s.motor_rate.angle, t.torque_by_deflection - t.loss_by_deflection - t.drive_by_angle);
-      add(s.motor_rate.rate, t.gear_damping + t.motor_loss_slope - t.drive_by_rate);
-    }
-    add(s.motor_angle.angle, c);
-    add(s.motor_angle.rate, -1.0);
-    // Work of the drives, - drive qm', and what is lost, - gear damping times rate^2 - losses qm'.
-    add(s.drive_work.q, -t.drive_by_q * t.motor_rate);
-    add(s.drive_work.v, -t.drive_by_v * t.motor_rate);
-    add(s.drive_work.angle, -t.drive_by_angle * t.motor_rate);
-    add(s.drive_work.rate, -t.drive_by_rate * t.motor_rate - t.drive);
-    add(s.lost.v, -2.0 * t.gear_damping * t.deflection_rate);
-    add(s.lost.rate,
-        2.0 * t.gear_damping * t.deflection_rate - t.motor_loss_slope * t.motor_rate - t.motor_loss);
-    const double loss_by_deflection =
-        t.gear_damping_slope * t.deflection_rate * t.deflection_rate + t.loss_by_deflection * t.motor_rate;
-    add(s.lost.q, -loss_by_deflection);
-    add(s.lost.angle, loss_by_deflection);
-  }
+  for (int k = 0; k < arm_.motors(); ++k) add_motor_derivatives(k, point, c, values);
   for (const int diagonal : slots_.work) values[at(diagonal)] += c;
+}
+
+void ElasticArmPart::add_motor_derivatives(int k, const numerics::DaePoint& point, double c,
+                                           std::vector<double>& values) const {
+  const Terms t = terms(point.time, point.y, k);
+  const JointSlots& s = joint_slots_[at(k)];
+  const auto add = [&values](int index, double value) { values[at(index)] += value; };
+  // Balance of the link: + tau.
+  add(s.link.q, t.torque_by_deflection);
+  add(s.link.v, t.gear_damping);
+  add(s.link.angle, -t.torque_by_deflection);
+  add(s.link.rate, -t.gear_damping);
+  // Balance of the motor: Im qm'' + losses - tau - drive, or Im (qm' - r').
+  const bool on_course = drives_[at(k)].mode == DriveMode::course;
+  add(s.motor_rate.rate, (on_course ? 1.0 : c) * arm_.joints[at(k)].motor_inertia);
+  if (!fixed(k) && !on_course) {
+    add(s.motor_rate.q, t.loss_by_deflection - t.torque_by_deflection);
+    add(s.motor_rate.v, -t.gear_damping);
+    add(s.motor_rate.angle, t.torque_by_deflection - t.loss_by_deflection - t.drive_by_angle);
+    add(s.motor_rate.rate, t.gear_damping + t.motor_loss_slope - t.drive_by_rate);
+  }
+  add(s.motor_angle.angle, c);
+  add(s.motor_angle.rate, -1.0);
+  // Work of the drives, - drive qm', and what is lost, - gear damping times rate^2 - losses qm'.
+  add(s.drive_work.q, -t.drive_by_q * t.motor_rate);
+  add(s.drive_work.v, -t.drive_by_v * t.motor_rate);
+  add(s.drive_work.angle, -t.drive_by_angle * t.motor_rate);
+  add(s.drive_work.rate, -t.drive_by_rate * t.motor_rate - t.drive);
+  add(s.lost.v, -2.0 * t.gear_damping * t.deflection_rate);
+  add(s.lost.rate,
+      2.0 * t.gear_damping * t.deflection_rate - t.motor_loss_slope * t.motor_rate - t.motor_loss);
+  const double loss_by_deflection =
+      t.gear_damping_slope * t.deflection_rate * t.deflection_rate + t.loss_by_deflection * t.motor_rate;
+  add(s.lost.q, -loss_by_deflection);
+  add(s.lost.angle, loss_by_deflection);
 }
 
 void ElasticArmPart::add_load_derivatives(double time, std::vector<double>& values) {

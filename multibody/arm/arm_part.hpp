@@ -172,6 +172,8 @@ class ElasticArmPart : public numerics::DaePart {
   bool place_loads(double time, numerics::VectorView y);
   void use_momentum(const numerics::DaePoint& at, bool loaded, Eigen::Ref<Eigen::VectorXd> rows);
   void add_momentum_derivatives(double time, double c, std::vector<double>& values);
+  void add_motor_derivatives(int k, const numerics::DaePoint& point, double c,
+                             std::vector<double>& values) const;
   void add_load_derivatives(double time, std::vector<double>& values);
 
   const ElasticArm& arm_;

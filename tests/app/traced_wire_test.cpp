@@ -1,11 +1,14 @@
 #include "app/traced_wire.hpp"
 
+#include "base/files.hpp"
 #include "identification/effects/catalogue.hpp"
 #include "reduction/wire_file.hpp"
 #include "tests/app/report/reproduce_fixture.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include <memory>
 #include <string>
 
 namespace snare::app {
@@ -64,6 +67,32 @@ TEST(TracedWire, CommentsStateWhatWasTraced) {
     EXPECT_NE(text.find(line), std::string::npos) << line << " in\n" << text;
   }
   EXPECT_EQ(text.find("do not rely"), std::string::npos);
+}
+
+// Of published fits the leading explanation is written, not the fit whose range is assumed.
+TEST(TracedWire, IsThatOfTheLeadingExplanation) {
+  Reproduction result = traced_reproduction(VerdictKind::nothing_missing);
+  result.map = std::make_shared<nlohmann::json>(
+      nlohmann::json::parse(base::read_text(SNARE_SOURCE_DIR "/data/published/published_static_map.json")));
+  const identification::Parameter* mounts =
+      identification::parameters().find("mount_axial_compliance.compliance_m_N");
+  RefittedLeader leader{"mounts_give_and_turn", "the mounts give way and turn",           6, 0.5, {},
+                        result.experiment,      {{mounts, mounts->coordinate(0.0, 2e-5)}}};
+  leader.experiment.series.front().test.travel = {0.0, 3e-3, 7e-3};
+  result.leader = leader;
+  const std::string text = traced_wire_toml(result, "snare reproduce test.toml");
+  const reduction::WireFile file = reduction::parse_wire_file("traced.toml", text);
+  const coupling::PushProblem& test = file.cases.front().test;
+  EXPECT_NEAR(test.mount.translational_stiffness.value_or(0.0), 5e4, 1e-6);
+  EXPECT_EQ(test.wire.bending_stiffness(), 0.048) << "as declared";
+  EXPECT_EQ(file.cases.front().travel.high, 7e-3) << "as far as its range";
+  EXPECT_EQ(file.title, "traced wire of \"Static push\": explained");
+  for (const char* line :
+       {"by the leading explanation of", "# The published fits agree with the declared wire",
+        "# Here the mounts give way and turn, fitted to 6 readings a series over the range below",
+        "#   mount_axial_compliance.compliance_m_N = 2e-05 m/N (declared: 0)\n"}) {
+    EXPECT_NE(text.find(line), std::string::npos) << line << " in\n" << text;
+  }
 }
 
 TEST(TracedWire, SaysWhereNoModelIsAccepted) {

@@ -55,7 +55,7 @@ def generate(seed):
 
 
 def bushing(draw, k, number):
-    other = draw.choice(["world", f"b{number - 1}"]) if number > 1 else "world"
+    other = draw.choice(["world", f"b{number - 1}", f"b{number - 1}"]) if number > 1 else "world"
     stiff = draw.log(50.0, 1e5)
     table = {
         "name": f"spring{k}",
@@ -64,7 +64,7 @@ def bushing(draw, k, number):
         "translational_stiffness_N_m": draw.choice([stiff, [stiff, 2.0 * stiff, 0.0]]),
         "rotational_stiffness_Nm_rad": draw.log(0.5, 100.0),
     }
-    if draw.maybe(0.5):
+    if draw.maybe(0.6):
         table |= {"translational_damping_Ns_m": draw.log(0.1, 30.0), "rotational_damping_Nms_rad": draw.log(1e-3, 0.1)}
     return table
 

@@ -87,8 +87,9 @@ def generate(seed):
     main["output"] = {"checkpoint_interval_s": 10.0}
     span = draw.choice([175.0, draw.log(80.0, 400.0)])
     wires, bodies, shapes, contacts = [], [], [], []
-    model = draw.choice(["full", "full", "quasi_static", "quasi_static", "stretched"])
-    on_body = draw.maybe(0.2)
+    model = draw.choice(["full", "full", "quasi_static", "quasi_static", "stretched", "quadratic"])
+    law = model in ("stretched", "quadratic")
+    on_body = draw.maybe(0.2) and model != "quadratic"
     for k in range(draw.choice([1, 1, 2])):
         table = section(draw, span)
         slack = draw.choice([draw.log(1e-3, 0.05), draw.log(1e-3, 0.02), -draw.log(1e-4, 3e-3)])
@@ -105,8 +106,15 @@ def generate(seed):
         }
         if model == "full" and draw.maybe(0.3):
             one["formulation"] = "vertices"
-        if model == "stretched":
+        if law:
             one["mount"] = "pinned"
+        if model == "quadratic":
+            one["quadratic"] = {
+                "position_mm": float(f"{span * draw.uniform(0.3, 0.7):.4g}"),
+                "A_N_m2": draw.log(1e4, 1e6),
+                "B_N_m": draw.log(10.0, 1e3),
+                "C_N": draw.choice([0.0, draw.between(0.05, 0.5)]),
+            }
         if on_body:
             one.pop("strand_extra_stiffness_Nm2", None)
             one.pop("strand_slip_curvature_1_m", None)
@@ -135,7 +143,7 @@ def generate(seed):
     below = wires[0]["bulge"][1] < 0.0 or any(w["bulge"][1] < 0.0 for w in wires)
     start = -(sag if below else 0.0) - 2.5 * radius - 20.0
     speed = draw.log(0.05, 3.0)
-    if model == "stretched" or draw.maybe(0.85):
+    if law or draw.maybe(0.85):
         bodies.append(
             body(
                 draw,
@@ -147,8 +155,8 @@ def generate(seed):
         )
         if draw.maybe(0.7):  # begins beside the wire
             bodies[-1]["position_mm"][1] = round(start + 18.0, 3) if not below else bodies[-1]["position_mm"][1]
-        shapes.append(shape(draw, "b", radius, model == "stretched"))
-    if model != "stretched" and draw.maybe(0.2):
+        shapes.append(shape(draw, "b", radius, law))
+    if not law and draw.maybe(0.2):
         shapes.append(
             {
                 "name": "post",

@@ -85,14 +85,15 @@ FAULTS = [
 
 
 def relations(snare, subject, a, folder, first=0, files=0):
-    """Broken relations by file, of some files of one subject: {file: [relation, ...]}."""
+    """Broken relations by file, of some files of one subject: {file: [relation, ...]}; "has a result" where the file itself has none."""
     journal = folder / "journal.jsonl"
     journal.unlink(missing_ok=True)
     numbers = {"--files": files or a.files, "--first": first, "--seed": a.seed, "--jobs": a.jobs, "--shrink": 0, "--journal": journal, "--keep": folder / "kept"}
     words = [str(word) for pair in numbers.items() for word in pair]
     subprocess.run([sys.executable, "-B", HERE / "relations.py", snare, *words, "--subject", subject], capture_output=True, check=False)
     entries = map(json.loads, journal.read_text(encoding="utf-8").splitlines())
-    return {entry["file"]: [b["relation"] for b in entry["broken"]] for entry in entries if entry["broken"]}
+    found = {entry["file"]: [b["relation"] for b in entry["broken"]] + (["has a result"] if "why" in entry else []) for entry in entries}
+    return {file: broken for file, broken in found.items() if broken}
 
 
 def build(worktree, folder):

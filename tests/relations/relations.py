@@ -7,7 +7,7 @@
 A subject has a generator (generate_SUBJECT.py: a file from a seed, the same everywhere) and relations (relations_SUBJECT.py: a function each, that
 runs the file and a changed one and holds their numbers against each other). Where only order or names change the numbers are the same bytes; elsewhere
 they differ by no more than the runs say of their own errors: the stated error of a push, of a motion what a tenth of its tolerances changes. Every file
-meets M relations of its subject, drawn with it (0: all). A relation may be undecided: it does not apply to this file, or a run has no result.
+meets the balances of its subject, which any wrong force disturbs, and M of its other relations, drawn with it (0: all). A relation may be undecided: it does not apply to this file, or a run has no result.
 A line of FILE of `--journal` for every file that is done, which is not run again. `--results` gets the counts, as JSON. Of a broken relation the smallest file
 that still breaks it goes to DIR (else a folder of its own beside the temporary files) with the two commands that show it. What is known, with its reason, stands in KNOWN below: it is counted and
 printed, and is no failure. Exits 1 where another relation is broken.
@@ -84,8 +84,10 @@ KNOWN = [
 
 
 def relations(subject):
-    module = {"bodies": "motion", "arms": "motion", "snares": "motion"}.get(subject, subject)
-    return importlib.import_module(f"relations_{module}").RELATIONS
+    """The balances that every file meets, and the other relations."""
+    module = importlib.import_module("relations_" + ("motion" if subject in ("bodies", "arms", "snares") else subject))
+    balances = getattr(module, "BALANCES", [])
+    return balances, [r for r in module.RELATIONS if r not in balances]
 
 
 def verdict(relation, case, run):
@@ -108,19 +110,19 @@ def one_file(a, subject, number):
     """Verdicts of one file, a dictionary for the journal."""
     seed = f"{subject} {a.seed} {number}"
     case = importlib.import_module(f"generate_{subject}").generate(seed)
-    chosen = [r for r in relations(subject) if not a.relation or r.__name__ in a.relation]
+    balances, chosen = ([r for r in some if not a.relation or r.__name__ in a.relation] for some in relations(subject))
     random.Random(seed).shuffle(chosen)
     found = {"file": seed, "relations": {}, "broken": []}
     decided = 0
     began = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
-        for relation in chosen:
+        for relation in balances + chosen:
             if a.most and decided >= a.most:
                 break
             run = Runner(a.snare, folder)
             result, what, said = verdict(relation, case, run)
             found["relations"][relation.__name__] = result
-            decided += result != "undecided"
+            decided += result != "undecided" and relation in chosen
             if result == "broken":
                 found["broken"].append(
                     {"relation": relation.__name__, "what": what, "said": said, "known": known(subject, relation.__name__, case)}
@@ -171,6 +173,16 @@ def counts(journal):
         why = {b["relation"]: b["known"] for b in line["broken"]}
         for name, result in line["relations"].items():
             table[f"{subject}: {name}"]["known" if result == "broken" and why[name] else result] += 1
+    return dict(sorted(table.items()))
+
+
+def without_result(journal):
+    """By subject: files that have no result themselves, as where a solver has given up, of all files."""
+    table = collections.defaultdict(lambda: [0, 0])
+    for line in journal:
+        count = table[line["file"].split()[0]]
+        count[0] += "why" in line
+        count[1] += 1
     return dict(sorted(table.items()))
 
 
@@ -243,10 +255,12 @@ def finish(a, journal):
             "seed": a.seed,
             "seconds": round(sum(line["seconds"] for line in journal)),
             "total": dict(total),
+            "without_result": without_result(journal),
             "relations": table,
             "broken": listed,
         }
         a.results.write_text(json.dumps(result, indent=1) + "\n")
+    print("without a result: " + ", ".join(f"{name} {some} of {all_}" for name, (some, all_) in without_result(journal).items()))
     print(
         f"{len(journal)} files, {total['holds']} relations hold, {total['broken']} broken, {total['known']} known, {total['undecided']} undecided"
     )

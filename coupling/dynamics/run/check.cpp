@@ -92,113 +92,119 @@ void validate_laws(const Motion& motion, Complaints& c) {
   }
 }
 
-}  // namespace
+void require_positive(Complaints& c, const std::string& key, double value) {
+  c.require(std::isfinite(value) && value > 0.0, key, value, "must be > 0");
+}
 
-void require_valid(const Motion& motion, const MotionOptions& options) {
-  Complaints c;
-  const auto positive = [&c](const std::string& key, double value) {
-    c.require(std::isfinite(value) && value > 0.0, key, value, "must be > 0");
-  };
-  positive("duration", options.duration);
-  positive("output_interval", options.output_interval);
-  positive("relative_tolerance", options.relative_tolerance);
-  positive("position_tolerance", options.position_tolerance);
-  positive("velocity_tolerance", options.velocity_tolerance);
-  positive("quasi_static_velocity_tolerance", options.quasi_static_velocity_tolerance);
-  positive("twist_tolerance", options.twist_tolerance);
-  positive("body_position_tolerance", options.body_position_tolerance);
-  positive("body_velocity_tolerance", options.body_velocity_tolerance);
-  positive("angle_tolerance", options.angle_tolerance);
-  positive("spin_tolerance", options.spin_tolerance);
-  positive("newton_share", options.newton_share.value_or(1.0));
+void validate_options(const MotionOptions& options, Complaints& c) {
+  require_positive(c, "duration", options.duration);
+  require_positive(c, "output_interval", options.output_interval);
+  require_positive(c, "relative_tolerance", options.relative_tolerance);
+  require_positive(c, "position_tolerance", options.position_tolerance);
+  require_positive(c, "velocity_tolerance", options.velocity_tolerance);
+  require_positive(c, "quasi_static_velocity_tolerance", options.quasi_static_velocity_tolerance);
+  require_positive(c, "twist_tolerance", options.twist_tolerance);
+  require_positive(c, "body_position_tolerance", options.body_position_tolerance);
+  require_positive(c, "body_velocity_tolerance", options.body_velocity_tolerance);
+  require_positive(c, "angle_tolerance", options.angle_tolerance);
+  require_positive(c, "spin_tolerance", options.spin_tolerance);
+  require_positive(c, "newton_share", options.newton_share.value_or(1.0));
   c.require(options.peak_window >= 0.0, "peak_window", options.peak_window, "must be >= 0");
   c.require(options.checkpoint_interval > 0.0, "checkpoint_interval", options.checkpoint_interval,
             "must be > 0");
   const int order = options.max_order.value_or(1);
   c.require(order >= 1 && order <= 5, "max_order", order, "must be 1 to 5");
-  for (const MotionWire& w : motion.wires) {
-    positive(w.name + ".length", w.rod.length);
-    positive(w.name + ".mass_per_length", w.rod.mass_per_length);
-    positive(w.name + ".axial_stiffness", w.rod.properties.axial_stiffness);
-    positive(w.name + ".bending_stiffness", w.rod.properties.bending_stiffness);
-    positive(w.name + ".torsional_stiffness", w.rod.properties.torsional_stiffness);
-    c.require(w.strength.breaking_tension > 0.0, w.name + ".strength", w.strength.breaking_tension,
-              "must be > 0");
-    c.require(w.rod.elements >= 4, w.name + ".elements", w.rod.elements, "must be >= 4");
-    if (w.rod.strands.act()) {
-      positive(w.name + ".strands.slip_curvature", w.rod.strands.slip_curvature);
-      positive(w.name + ".strands.time", w.rod.strands.time);
-    }
-    c.require(w.positions.cols() == w.rod.elements + 1, w.name + ".positions",
-              static_cast<double>(w.positions.cols()), "must be one more than the elements");
-    c.require(w.velocities.cols() == 0 || w.velocities.cols() == w.rod.elements + 1, w.name + ".velocities",
-              static_cast<double>(w.velocities.cols()), "must be none or one more than the elements");
-    c.require(w.positions.allFinite() && w.velocities.allFinite(), w.name + ".positions", std::nan(""),
-              "must be finite");
+}
+
+void validate_wire(const MotionWire& w, Complaints& c) {
+  require_positive(c, w.name + ".length", w.rod.length);
+  require_positive(c, w.name + ".mass_per_length", w.rod.mass_per_length);
+  require_positive(c, w.name + ".axial_stiffness", w.rod.properties.axial_stiffness);
+  require_positive(c, w.name + ".bending_stiffness", w.rod.properties.bending_stiffness);
+  require_positive(c, w.name + ".torsional_stiffness", w.rod.properties.torsional_stiffness);
+  c.require(w.strength.breaking_tension > 0.0, w.name + ".strength", w.strength.breaking_tension,
+            "must be > 0");
+  c.require(w.rod.elements >= 4, w.name + ".elements", w.rod.elements, "must be >= 4");
+  if (w.rod.strands.act()) {
+    require_positive(c, w.name + ".strands.slip_curvature", w.rod.strands.slip_curvature);
+    require_positive(c, w.name + ".strands.time", w.rod.strands.time);
   }
-  for (const MotionBody& b : motion.bodies) {
-    positive(b.name + ".mass", b.properties.mass);
-    const Eigen::LLT<Eigen::Matrix3d> factor(b.properties.inertia);
-    c.require(factor.info() == Eigen::Success, b.name + ".inertia", b.properties.inertia.trace(),
-              "must be positive definite");
-    c.require(static_cast<bool>(b.course_velocity) == static_cast<bool>(b.course_acceleration),
-              b.name + ".course", b.course_velocity ? 1.0 : 0.0,
-              "must have both velocity and acceleration, or none");
-    if (b.robot) {
-      c.require(b.driven && !b.course_velocity, b.name + ".robot", 0.0,
-                "must be of a driven body without a course");
-      positive(b.name + ".robot.mass", b.robot->mass);
-      positive(b.name + ".robot.delay", b.robot->delay);
-      for (const MotionRobot::Measured& m : b.robot->measured)
-        c.require(m.contact >= 0 && m.contact < static_cast<int>(motion.contact_names().size()) &&
-                      presses_on_body(motion.contact_place(base::at(m.contact)).kind),
-                  b.name + ".robot.contact", m.contact, "must be the index of a contact of a body");
-    }
-    c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation",
-              b.start.orientation.norm(), "must be a unit quaternion");
+  c.require(w.positions.cols() == w.rod.elements + 1, w.name + ".positions",
+            static_cast<double>(w.positions.cols()), "must be one more than the elements");
+  c.require(w.velocities.cols() == 0 || w.velocities.cols() == w.rod.elements + 1, w.name + ".velocities",
+            static_cast<double>(w.velocities.cols()), "must be none or one more than the elements");
+  c.require(w.positions.allFinite() && w.velocities.allFinite(), w.name + ".positions", std::nan(""),
+            "must be finite");
+}
+
+void validate_body(const Motion& motion, const MotionBody& b, Complaints& c) {
+  require_positive(c, b.name + ".mass", b.properties.mass);
+  const Eigen::LLT<Eigen::Matrix3d> factor(b.properties.inertia);
+  c.require(factor.info() == Eigen::Success, b.name + ".inertia", b.properties.inertia.trace(),
+            "must be positive definite");
+  c.require(static_cast<bool>(b.course_velocity) == static_cast<bool>(b.course_acceleration),
+            b.name + ".course", b.course_velocity ? 1.0 : 0.0,
+            "must have both velocity and acceleration, or none");
+  if (b.robot) {
+    c.require(b.driven && !b.course_velocity, b.name + ".robot", 0.0,
+              "must be of a driven body without a course");
+    require_positive(c, b.name + ".robot.mass", b.robot->mass);
+    require_positive(c, b.name + ".robot.delay", b.robot->delay);
+    for (const MotionRobot::Measured& m : b.robot->measured)
+      c.require(m.contact >= 0 && m.contact < static_cast<int>(motion.contact_names().size()) &&
+                    presses_on_body(motion.contact_place(base::at(m.contact)).kind),
+                b.name + ".robot.contact", m.contact, "must be the index of a contact of a body");
   }
-  for (const MotionContact& k : motion.contacts) {
-    c.require(k.wire >= 0 && k.wire < static_cast<int>(motion.wires.size()), k.name + ".wire", k.wire,
-              "must be the index of a wire");
-    c.require(k.body >= 0 && k.body < static_cast<int>(motion.bodies.size()), k.name + ".body", k.body,
-              "must be the index of a body");
-    c.require(k.shape != nullptr, k.name + ".shape", 0.0, "must be given");
-    validate_foundation(c, k.name + ".foundation.", k.foundation);
-    c.require(std::isfinite(k.wire_radius) && k.wire_radius >= 0.0, k.name + ".wire_radius", k.wire_radius,
-              "must be >= 0");
-    c.require(!k.shape || k.shape->smallest_radius() > 0.0 || k.wire_radius > 0.0, k.name + ".wire_radius",
-              k.wire_radius, "must be > 0 for a shape with edges");
-    validate_friction(c, k.name + ".friction.", k.friction);
+  c.require(std::abs(b.start.orientation.norm() - 1.0) < 1e-9, b.name + ".orientation",
+            b.start.orientation.norm(), "must be a unit quaternion");
+}
+
+void validate_contact(const Motion& motion, const MotionContact& k, Complaints& c) {
+  c.require(k.wire >= 0 && k.wire < static_cast<int>(motion.wires.size()), k.name + ".wire", k.wire,
+            "must be the index of a wire");
+  c.require(k.body >= 0 && k.body < static_cast<int>(motion.bodies.size()), k.name + ".body", k.body,
+            "must be the index of a body");
+  c.require(k.shape != nullptr, k.name + ".shape", 0.0, "must be given");
+  validate_foundation(c, k.name + ".foundation.", k.foundation);
+  c.require(std::isfinite(k.wire_radius) && k.wire_radius >= 0.0, k.name + ".wire_radius", k.wire_radius,
+            "must be >= 0");
+  c.require(!k.shape || k.shape->smallest_radius() > 0.0 || k.wire_radius > 0.0, k.name + ".wire_radius",
+            k.wire_radius, "must be > 0 for a shape with edges");
+  validate_friction(c, k.name + ".friction.", k.friction);
+}
+
+void validate_pair(const Motion& motion, const WirePair& p, Complaints& c) {
+  bool both = true;
+  for (std::size_t w = 0; w < 2; ++w) {
+    both = c.require(p.wires[w] >= 0 && p.wires[w] < static_cast<int>(motion.wires.size()), p.name + ".wires",
+                     p.wires[w], "must be indices of wires") &&
+           both;
+    require_positive(c, p.name + ".radii", p.radii[w]);
   }
-  for (const WirePair& p : motion.wire_pairs) {
-    bool both = true;
-    for (std::size_t w = 0; w < 2; ++w) {
-      both = c.require(p.wires[w] >= 0 && p.wires[w] < static_cast<int>(motion.wires.size()),
-                       p.name + ".wires", p.wires[w], "must be indices of wires") &&
-             both;
-      positive(p.name + ".radii", p.radii[w]);
-    }
-    c.require(!both || p.wires[0] != p.wires[1], p.name + ".wires", p.wires[0],
-              "must be two different wires");
-    validate_foundation(c, p.name + ".foundation.", p.foundation);
-    validate_friction(c, p.name + ".friction.", p.friction);
-  }
-  for (const PointContactLaw& s : motion.point_contacts) {
-    c.require(s.body >= 0 && s.body < static_cast<int>(motion.bodies.size()), s.name + ".body", s.body,
-              "must be the index of a body");
-    c.require(std::abs(s.direction.norm() - 1.0) < 1e-12, s.name + ".direction", s.direction.norm(),
-              "must be a unit vector");
-    c.require(static_cast<bool>(s.law), s.name + ".law", 0.0, "must be given");
-  }
-  for (const MotionMount& m : motion.mounts) {
-    if (m.wire < 0 || m.wire >= static_cast<int>(motion.wires.size())) continue;  // said below
-    const MotionWire& w = motion.wires[base::at(m.wire)];
-    c.require(m.carrier.kind == MotionCarrier::Kind::world || w.rod.damping.mass_rate == 0.0,
-              w.name + ".damping.mass_rate", w.rod.damping.mass_rate,
-              fmt::format("must be 0: it drags against the world, which {} leaves", m.name));
-  }
+  c.require(!both || p.wires[0] != p.wires[1], p.name + ".wires", p.wires[0], "must be two different wires");
+  validate_foundation(c, p.name + ".foundation.", p.foundation);
+  validate_friction(c, p.name + ".friction.", p.friction);
+}
+
+void validate_point_contact(const Motion& motion, const PointContactLaw& s, Complaints& c) {
+  c.require(s.body >= 0 && s.body < static_cast<int>(motion.bodies.size()), s.name + ".body", s.body,
+            "must be the index of a body");
+  c.require(std::abs(s.direction.norm() - 1.0) < 1e-12, s.name + ".direction", s.direction.norm(),
+            "must be a unit vector");
+  c.require(static_cast<bool>(s.law), s.name + ".law", 0.0, "must be given");
+}
+
+void validate_mount(const Motion& motion, const MotionMount& m, Complaints& c) {
+  if (m.wire < 0 || m.wire >= static_cast<int>(motion.wires.size())) return;  // ConstraintSet::check says so
+  const MotionWire& w = motion.wires[base::at(m.wire)];
+  c.require(m.carrier.kind == MotionCarrier::Kind::world || w.rod.damping.mass_rate == 0.0,
+            w.name + ".damping.mass_rate", w.rod.damping.mass_rate,
+            fmt::format("must be 0: it drags against the world, which {} leaves", m.name));
+}
+
+void validate_sensed(const Motion& motion, Complaints& c) {
   for (const SensedSignal& s : motion.sensed) {
-    positive("sensed.interval", s.interval);
+    require_positive(c, "sensed.interval", s.interval);
     c.require(s.delay >= 0.0, "sensed.delay", s.delay, "must be >= 0");
     c.require(static_cast<bool>(s.make), "sensed.make", 0.0, "must be given");
   }
@@ -207,6 +213,20 @@ void require_valid(const Motion& motion, const MotionOptions& options) {
       c.require(b.sensed >= 0 && b.sensed < static_cast<int>(motion.sensed.size()), p.name + ".sensed",
                 b.sensed, "must be the index of a sensed signal");
   }
+}
+
+}  // namespace
+
+void require_valid(const Motion& motion, const MotionOptions& options) {
+  Complaints c;
+  validate_options(options, c);
+  for (const MotionWire& w : motion.wires) validate_wire(w, c);
+  for (const MotionBody& b : motion.bodies) validate_body(motion, b, c);
+  for (const MotionContact& k : motion.contacts) validate_contact(motion, k, c);
+  for (const WirePair& p : motion.wire_pairs) validate_pair(motion, p, c);
+  for (const PointContactLaw& s : motion.point_contacts) validate_point_contact(motion, s, c);
+  for (const MotionMount& m : motion.mounts) validate_mount(motion, m, c);
+  validate_sensed(motion, c);
   ConstraintSet::check(motion, c);
   validate_laws(motion, c);
   c.raise();

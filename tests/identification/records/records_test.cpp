@@ -158,6 +158,17 @@ TEST_F(Records, SimplexEndsWhereItHardlyMoves) {
     EXPECT_NEAR(near.base.numbers[k].value, far.base.numbers[k].value, 0.05 * far.base.numbers[k].value);
 }
 
+// A simplex that ends far from the minimum says so, and calls no number open because chi2 does not rise.
+TEST_F(Records, SimplexThatEndsTooEarlySaysSo) {
+  write_swing(folder_ / "a.csv", {.inertia = 1.2e-4, .viscous = 2.0e-4}, 5);
+  const RecordTrace trace =
+      trace_records(read_records(write("sigma = 0.02\n", "method = \"nelder_mead\"\nsimplex_change = 0.2\n")),
+                    {.effects = false});
+  ASSERT_TRUE(trace.report.usable());
+  EXPECT_THAT(trace.warnings, testing::Contains(HasSubstr("has not ended at its least sum of squares")));
+  EXPECT_TRUE(trace.base.open.empty());
+}
+
 // A record of a swing half again as long: the numbers that are declared lose step with it in the second
 // swing.
 TEST_F(Records, LostStepIsFoundFromTheBeginnings) {
