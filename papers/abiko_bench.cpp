@@ -67,8 +67,9 @@ const Pushes& pushes(Runs& runs) {
                                                         identification::parameters());
     reduction::WireCase wire = traced_wire(runs);
     wire.test.travel.clear();
-    for (Series& series : result.experiment.series) {
-      const double longer = wire.travel.high / series.test.travel.back();
+    for (Series& series : result.experiment.series) {  // over the range of the traced wire
+      const double longer = wire.travel.high / series.law->to;
+      series.law->to = wire.travel.high;
       for (double& d : series.test.travel) d *= longer;
     }
     for (std::size_t k = 0; k < result.experiment.series.size(); ++k) {

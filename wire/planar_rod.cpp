@@ -2,6 +2,7 @@
 
 #include "base/index.hpp"
 #include "wire/planar_gradient.hpp"
+#include "wire/series_stiffness.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -53,26 +54,47 @@ struct CellLaw {
   const double* slipped;     // of the sliders; null: virgin
 };
 
-/// E = 1/2 k s^2, s = kappa - n l, kappa = 2 tan(phi/2), 1/k = l/EI + flexibility of a mount that gives
-/// (W.6), n the natural curvature. With kappa' = dkappa/dphi = 1 + kappa^2/4, kappa'' = kappa kappa'/2, dk/dl
-/// = -k^2/EI, d2k/dl2 = -2 k (dk/dl)/EI:
-///   dE/dphi = k s kappa',   d2E/dphi2 = k (kappa'^2 + s kappa kappa'/2),   d2E/dphi dl = (s dk/dl - k n)
-///     kappa',
+/// A measure kappa of the turning phi and its derivatives by phi.
+struct TurningMeasure {
+  double value, slope, curvature;
+};
+
+/// E = 1/2 k s^2, s = kappa - n l, n the natural curvature; ' is d/dphi:
+///   dE/dphi = k s kappa',   d2E/dphi2 = k (kappa'^2 + s kappa''),   d2E/dphi dl = (s dk/dl - k n) kappa',
 ///   dE/dl = 1/2 s^2 dk/dl - k n s,   d2E/dl2 = 1/2 s^2 d2k/dl2 - 2 n s dk/dl + k n^2
-Cell bend_elastic(double kappa, double ei, const CellLaw& law, double natural_curvature) {
-  const double k = 1.0 / (law.length / ei + law.mount_flexibility);
-  const double strain = kappa - natural_curvature * law.length;
-  const double slope = 1.0 + 0.25 * kappa * kappa;  // d kappa / d phi
-  const double k1 = -k * k / ei;                    // dk/dl
-  const double k2 = -2.0 * k * k1 / ei;
+Cell bend_elastic(const TurningMeasure& kappa, const SeriesStiffness<double>& k, double length,
+                  double natural_curvature) {
+  const double strain = kappa.value - natural_curvature * length;
   Cell cell;
-  cell.energy = 0.5 * k * strain * strain;
-  cell.moment = k * strain * slope;
-  cell.stiffness = k * (slope * slope + 0.5 * strain * kappa * slope);
-  cell.by_length = 0.5 * k1 * strain * strain - k * natural_curvature * strain;
-  cell.moment_by_length = (k1 * strain - k * natural_curvature) * slope;
-  cell.by_length_twice = 0.5 * k2 * strain * strain - 2.0 * k1 * natural_curvature * strain +
-                         k * natural_curvature * natural_curvature;
+  cell.energy = 0.5 * k.k * strain * strain;
+  cell.moment = k.k * strain * kappa.slope;
+  cell.stiffness = k.k * (kappa.slope * kappa.slope + strain * kappa.curvature);
+  cell.by_length = 0.5 * k.first * strain * strain - k.k * natural_curvature * strain;
+  cell.moment_by_length = (k.first * strain - k.k * natural_curvature) * kappa.slope;
+  cell.by_length_twice = 0.5 * k.second * strain * strain - 2.0 * k.first * natural_curvature * strain +
+                         k.k * natural_curvature * natural_curvature;
+  return cell;
+}
+
+/// kappa = 2 tan(phi/2): kappa' = 1 + kappa^2/4, kappa'' = kappa kappa'/2.                   theory.md (W.2)
+TurningMeasure tangent_measure(double kappa) {
+  const double slope = 1.0 + 0.25 * kappa * kappa;
+  return {kappa, slope, 0.5 * kappa * slope};
+}
+
+/// Half a cell beside a mount that gives, whose spring is linear in the angle.               theory.md (W.6)
+Cell turn_with_mount(double kappa, double ei, const CellLaw& law, double natural_curvature) {
+  const SeriesStiffness<double> both = in_series(law.length, ei, law.mount_flexibility);
+  const SeriesStiffness<double> a = of_the_angle(both, law.length, ei);
+  const SeriesStiffness<double> b{both.k - a.k, both.first - a.first, both.second - a.second};
+  Cell cell = bend_elastic({2.0 * std::atan(0.5 * kappa), 1.0, 0.0}, a, law.length, natural_curvature);
+  const Cell rest = bend_elastic(tangent_measure(kappa), b, law.length, natural_curvature);
+  cell.energy += rest.energy;
+  cell.moment += rest.moment;
+  cell.stiffness += rest.stiffness;
+  cell.by_length += rest.by_length;
+  cell.moment_by_length += rest.moment_by_length;
+  cell.by_length_twice += rest.by_length_twice;
   return cell;
 }
 
@@ -101,14 +123,13 @@ double total_stiffness(double elastic, const std::vector<SliderElement>& sliders
 
 Cell bend(const Edge& before, const Edge& after, const CellLaw& law, const PlanarRodProperties& p) {
   const double kappa = integrated_curvature(before, after);
-  if (p.bending_sliders.empty()) {
-    return bend_elastic(kappa, law.factor * p.bending_stiffness, law, p.natural_curvature);
-  }
-  if (law.mount_flexibility > 0.0) {
-    return bend_elastic(kappa, total_stiffness(law.factor * p.bending_stiffness, p.bending_sliders), law,
+  const double ei = law.factor * p.bending_stiffness;
+  if (law.mount_flexibility > 0.0)
+    return turn_with_mount(kappa, total_stiffness(ei, p.bending_sliders), law, p.natural_curvature);
+  if (p.bending_sliders.empty())
+    return bend_elastic(tangent_measure(kappa), in_series(law.length, ei, 0.0), law.length,
                         p.natural_curvature);
-  }
-  return bend_with_sliders(kappa, law.factor * p.bending_stiffness, law, p);
+  return bend_with_sliders(kappa, ei, law, p);
 }
 
 Edge direction_of(const PlanarEnd& end) {

@@ -3,6 +3,7 @@
 #include "base/index.hpp"
 #include "wire/curvature.hpp"
 #include "wire/mesh.hpp"
+#include "wire/series_stiffness.hpp"
 #include "wire/spatial_properties.hpp"
 #include "wire/spatial_state.hpp"
 
@@ -36,6 +37,7 @@ struct SpatialCellOf {
   S by_cosine_twice = 0.0;            ///< d2E/dc2
   Pair<S> by_kappa{0.0, 0.0};         ///< dE/dkappa_j [N m]
   S anisotropy = 0.0;                 ///< d2E/dkappa_1^2 = -d2E/dkappa_2^2 = (k_1 - k_2)/2
+  Pair<S> cosine_by_kappa{0.0, 0.0};  ///< d2E/dc dkappa_j [N m]
   S torque = 0.0;                     ///< dE/dtau [N m]
   S twist_stiffness = 0.0;            ///< d2E/dtau2
   S by_length = 0.0;                  ///< dE/dl [N]
@@ -97,25 +99,6 @@ void add_twisting(const S& tau, const S& l, double flexibility, const CellTerms&
                                         const SpatialEdge& after);
 
 // Here, for the compiler to put in where wires in motion spend their time.
-
-/// Stiffness of a cell of length l with a mount's flexibility f in series:                    theory.md (W.6)
-///   1/k = l/B + f,   dk/dl = -k^2/B,   d2k/dl2 = -2 k (dk/dl)/B
-template <class S>
-struct SeriesStiffness {
-  S k = 0.0;
-  S first = 0.0;   ///< dk/dl
-  S second = 0.0;  ///< d2k/dl2
-};
-
-template <class S>
-[[nodiscard, gnu::always_inline]] inline SeriesStiffness<S> in_series(const S& cell_length, double stiffness,
-                                                                      double flexibility) {
-  SeriesStiffness<S> s;
-  s.k = 1.0 / (cell_length / stiffness + flexibility);
-  s.first = -s.k * s.k / stiffness;
-  s.second = -2.0 * s.k * s.first / stiffness;
-  return s;
-}
 
 // (W.27)  Bending of a cell:
 //   E = 1/4 (k_1 + k_2)|kb|^2 + 1/4 (k_1 - k_2)(kappa_1^2 - kappa_2^2) + sum_j k_j n_j l (n_j l/2 - kappa_j)

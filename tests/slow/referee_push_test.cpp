@@ -86,18 +86,22 @@ coupling::PushProblem random_push(Draws& draw) {
   const double top = way * draw.between(0.2, 1.05);
   const int points = draw.count(3, 6);
   for (int i = 1; i <= points; ++i) p.travel.push_back(top * i / points);
+  if (draw.chance(0.3))
+    p.mount.translational_stiffness = p.wire.axial_stiffness() / p.wire.length * draw.of_any_size(0.1, 100.0);
+  if (p.mount.kind == wire::MountKind::clamped && draw.chance(0.4))
+    p.mount.rotational_stiffness = p.wire.bending_stiffness() / p.wire.length * draw.of_any_size(0.1, 100.0);
   return p;
 }
 
 std::string described(const coupling::PushProblem& p, int elements) {
   std::string text = fmt::format(
       "{} edges, EI {:.9g} N m^2, EA {:.9g} N, d {:.9g} m, length {:.12g} m, span {:.12g} m, natural "
-      "curvature {:.9g} "
-      "1/m, "
-      "{}, at {:.12g} m, pusher radius {:.9g} m, friction {:.6g}, {}, travels [m]",
+      "curvature {:.9g} 1/m, {} by {:.9g} N/m and {:.9g} N m/rad, at {:.12g} m, pusher radius {:.9g} m, "
+      "friction {:.6g}, {}, travels [m]",
       elements, p.wire.bending_stiffness(), p.wire.axial_stiffness(), p.wire.diameter, p.wire.length,
       p.mount.span, p.wire.natural_curvature, p.mount.kind == wire::MountKind::pinned ? "pinned" : "clamped",
-      p.contact_position, p.pusher.radius, p.pusher.friction,
+      p.mount.translational_stiffness_of(0), p.mount.rotational_stiffness_of(0), p.contact_position,
+      p.pusher.radius, p.pusher.friction,
       p.pusher.direction == coupling::PushDirection::inward ? "inward" : "outward");
   for (const double d : p.travel) text += fmt::format(" {:.12g}", d);
   return text;
@@ -111,6 +115,8 @@ validation::ElasticaPush elastica_of(const coupling::PushProblem& p, double fric
   e.span = p.mount.span;
   e.ends = p.mount.kind == wire::MountKind::pinned ? validation::ElasticaEnds::pinned
                                                    : validation::ElasticaEnds::clamped;
+  e.mount_axial_compliance = 1.0 / p.mount.translational_stiffness_of(0);
+  e.mount_rotational_compliance = 1.0 / p.mount.rotational_stiffness_of(0);
   e.side = p.pusher.direction == coupling::PushDirection::inward ? validation::ElasticaSide::against_bulge
                                                                  : validation::ElasticaSide::with_bulge;
   e.position = p.contact_position;

@@ -36,6 +36,28 @@ TEST(PushAccuracy, ForceConvergesAtSecondOrder) {
   }
 }
 
+// Clamps that turn by 0.3 rad: their springs are linear in the angle, in the plane and in space.
+TEST(PushAccuracy, ClampsThatTurnFarMeetTheContinuousWire) {
+  PushProblem test = declared_wire(40.0 * mm, 0.0);
+  test.mount.translational_stiffness = 55e3;
+  test.mount.rotational_stiffness = 0.6;
+  test.travel = {2.0 * mm, 8.0 * mm};
+  validation::ElasticaPush elastica = test::elastica_of(test);
+  elastica.mount_axial_compliance = 1.0 / 55e3;
+  elastica.mount_rotational_compliance = 1.0 / 0.6;
+  const std::vector<validation::ElasticaState> reference = validation::push_path(elastica, test.travel);
+  for (const double tilt : {0.0, 1e-6}) {
+    test.pusher.tilt = tilt;
+    const ExtrapolatedCurve result = solve_push_extrapolated(test, PushOptions{});
+    ASSERT_EQ(result.curve.points.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+      ASSERT_TRUE(reference[i].report.usable());
+      EXPECT_GT(std::abs(reference[0].shape.front().angle), 0.29);
+      EXPECT_NEAR(result.curve.points[i].force / reference[i].force, 1.0, 1e-6) << "tilt " << tilt;
+    }
+  }
+}
+
 TEST(PushAccuracy, ExtrapolatedForceMeetsTheContinuousWire) {
   for (const double radius : {0.0, 6.0 * mm}) {
     for (const double position : {40.0 * mm, 65.0 * mm, 90.0 * mm}) {
