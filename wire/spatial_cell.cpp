@@ -49,8 +49,8 @@ SpatialEdge mount_edge(const SpatialEnd& end, const std::optional<Frame>& frame,
 
 namespace {
 
-// (W.6)  A mount's spring is linear in the angles phi_j = f kappa_j of (W.31), not in kappa_j. Of the parts a_j
-// of the stiffnesses that are of the angle,
+// (W.6)  A mount's spring is linear in the angles phi_j = f kappa_j of (W.31), not in kappa_j. Of the parts
+// a_j of the stiffnesses that are of the angle,
 //   dE = 1/4 (a_1 + a_2)(phi^2 - |kb|^2) - sum_j a_j n_j l (f - 1) kappa_j
 // with phi^2 = f^2 |kb|^2, u = |kb|^2/4 and derivatives ' by c:
 //   d(phi^2)/dc = -2 f (1 + u),   d2(phi^2)/dc2 = -2 (f' (1 + u) - 2 f/chi^2)
