@@ -49,6 +49,11 @@ def rubs(case):
     return case.main["pusher"].get("friction", 0.0) > 0.0
 
 
+def slips_inward(case):
+    m = case.main
+    return m["pusher"]["direction"] == "inward" and "slip_tension_N" in m["mount"]
+
+
 def tilted(case):
     return "tilt_deg" in case.main["pusher"]
 
@@ -56,6 +61,12 @@ def tilted(case):
 # Subject, relations (none: all of them), of which files, and why it is not mended.
 KNOWN = [
     ("push", (), on_supports_with_weight, "the push begins from the shape without weight, and supports pull"),
+    (
+        "push",
+        ("forces_balance",),
+        slips_inward,
+        "where a mount slips under the compression of the wire at rest it draws away from the pusher: the first line has no force and reactions of one",
+    ),
     (
         "push",
         ("weak_natural_curvature_1_m",),

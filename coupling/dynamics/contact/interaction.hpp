@@ -74,6 +74,8 @@ class Interaction {
   [[nodiscard]] virtual double energy(const numerics::DaePoint& at) const = 0;
   /// Power that a law dissipates, no part of the integral `dissipated` [W], >= 0.
   [[nodiscard]] virtual double law_loss(const numerics::DaePoint& /*at*/) const { return 0.0; }
+  /// Energy that it held when it let go at once of what pressed on it, of all times [J], >= 0.
+  [[nodiscard]] virtual double let_go() const { return 0.0; }
   /// Adds to the rates of the integrals.
   virtual void add_rates(const numerics::DaePoint& at, const IntegralRates& rates) const = 0;
   /// Force on the wire, or on the first of two, and the sum of its normal forces [N].

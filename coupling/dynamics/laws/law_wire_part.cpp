@@ -437,8 +437,10 @@ bool LawWirePart::reaches(const std::array<FrameMotion<double>, 3>& frames) cons
 
 void LawWirePart::update_candidates(const VectorView& y) {
   const std::array<FrameMotion<double>, 3> now = motions<3>(frames(), y);
+  const double held = holds_ ? act(now).energy : 0.0;  // the shaft slides off beyond its end
   const bool was_within = std::exchange(within_, reaches(now));
   if (!within_) {
+    let_go_ += held;
     holds_ = false;
   } else if (!was_within) {
     holds_ = true;
@@ -453,13 +455,14 @@ void LawWirePart::update_candidates(const VectorView& y) {
 void LawWirePart::save_state(std::vector<double>& memory) const {
   memory.push_back(within_ ? 1.0 : 0.0);
   memory.push_back(holds_ ? 1.0 : 0.0);
-  memory.push_back(angle_);
+  memory.insert(memory.end(), {angle_, let_go_});
 }
 
 void LawWirePart::restore_state(const VectorView& /*y*/, std::span<const double>& memory) {
   within_ = numerics::take(memory) != 0.0;
   holds_ = numerics::take(memory) != 0.0;
   angle_ = numerics::take(memory);
+  let_go_ = numerics::take(memory);
 }
 
 }  // namespace snare::coupling

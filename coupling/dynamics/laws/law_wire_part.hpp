@@ -40,6 +40,7 @@ class LawWirePart final : public UnilateralForcePart {
   /// Looks whether the shaft is within reach, and before the wire; to be told the start, y in SI units.
   void update_candidates(const numerics::VectorView& y) override;
   void accept(const numerics::DaePoint& at) override { update_candidates(at.y); }
+  [[nodiscard]] double let_go() const override { return let_go_; }
   void save_state(std::vector<double>& memory) const override;
   void restore_state(const numerics::VectorView& y, std::span<const double>& memory) override;
 
@@ -69,6 +70,7 @@ class LawWirePart final : public UnilateralForcePart {
   ContactLaw stop_;
   bool within_ = false;  // the shaft is within reach along its axis
   bool holds_ = false;   // and was before the wire when it came there
+  double let_go_ = 0.0;  // [J], see let_go()
   double angle_ = 0.0;  // of a string between its mounts as seen from the axis of the shaft, at the last step
 };
 

@@ -104,6 +104,12 @@ void MotionRun::watch_law_wire(std::size_t k, double tension) {
   if (share >= 1.0 && wire.strength.ends_run) broken_ = wire.name + strength_reached(wire.strength, largest);
 }
 
+double MotionRun::let_go() const {
+  double sum = 0.0;
+  for (const auto& i : interactions_) sum += i->let_go();
+  return sum;
+}
+
 double MotionRun::law_loss(const DaePoint& at) const {
   double sum = 0.0;
   for (const auto& i : interactions_) sum += i->law_loss(at);
@@ -216,9 +222,9 @@ MotionSample MotionRun::sample(const DaePoint& at, const VectorXd& integrals) {
   s.time = at.time;
   EnergyBalance e = stored(at, &s);
   // The polynomials through the last steps may overshoot between them; the dissipation only grows.
-  e.dissipated =
-      std::clamp(integrals[integral::dissipated] + law_losses_.at(at.time) + constraints_->lost(at.y),
-                 lost_before_, lost_);
+  e.dissipated = std::clamp(
+      integrals[integral::dissipated] + law_losses_.at(at.time) + constraints_->lost(at.y) + let_go(),
+      lost_before_, lost_);
   e.work += integrals[integral::work];
   e.integrator = e.kinetic + e.strain + e.potential + e.dissipated - e.work - sums_.start_energy;
   e.corrected = corrected_;

@@ -240,7 +240,7 @@ bool MotionRun::write_until(double time) {
 // No rate of a loss is negative; above second order the integrator's sum of them may yet fall, within its
 // tolerance.
 void MotionRun::count_losses() {
-  const double others = integrals_[integral::laws] + constraints_->lost(y_);
+  const double others = integrals_[integral::laws] + constraints_->lost(y_) + let_go();
   const double sum = integrals_[integral::dissipated] + others;
   corrected_ += std::max(0.0, lost_ - sum);
   lost_ = std::max(sum, lost_);  // not a number, if that is not

@@ -103,6 +103,8 @@ class MotionRun {
   void watch_law_wire(std::size_t k, double tension);
   /// Updates the total dissipation, and removes and counts its decreases.
   void count_losses();
+  /// Energy that wires of laws held when the shaft slid off them [J]: dissipated.
+  [[nodiscard]] double let_go() const;
   /// Power that laws between bodies and in place of wires lose [W], >= 0.
   [[nodiscard]] double law_loss(const numerics::DaePoint& at) const;
   /// Books what has happened to an interaction.

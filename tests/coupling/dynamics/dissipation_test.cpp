@@ -319,7 +319,7 @@ TEST(Dissipation, OfAWireThatALawStandsFor) {
       const numerics::DaeSystem system({&bodies.a, &bodies.b, &part});
       VectorXd y = bodies.place(system, 0.02, random.between(1e-3, 3.0), random);
       if (trial % 5 == 0) y[bodies.b.position()] += trial % 2 == 0 ? 0.098 : -0.098;
-      const std::vector<double> held{1.0, 1.0, M_PI};
+      const std::vector<double> held{1.0, 1.0, M_PI, 0.0};
       std::span<const double> memory = held;
       part.restore_state(y, memory);
       losing += bodies.scene(part).expect_balanced(y, 1e-5) ? 1 : 0;

@@ -53,7 +53,7 @@ struct WireAboutShaft {
     body.declare(layout);
     y = VectorXd::Zero(layout.size());
     y[body.quaternion()] = 1.0;
-    const std::vector<double> before{1.0, 1.0, std::numbers::pi};
+    const std::vector<double> before{1.0, 1.0, std::numbers::pi, 0.0};
     std::span<const double> memory = before;
     part.restore_state(y, memory);
   }
@@ -206,7 +206,7 @@ TEST(LawWire, JacobianMatchesDifferences) {
     y[arm.coordinates()] *= 0.2;
     arm.settle(0.0, y);
     for (LawWirePart* part : {&string, &rod, &push}) {
-      const std::vector<double> held{1.0, 1.0, std::numbers::pi};
+      const std::vector<double> held{1.0, 1.0, std::numbers::pi, 0.0};
       std::span<const double> memory = held;
       part->restore_state(y, memory);
       acting += part->wrenches(y).empty() ? 0 : 1;
@@ -355,6 +355,36 @@ TEST(LawWire, PushesKeepEnergyAndMomentum) {
   EXPECT_NEAR(r.energy.integrator / energy, 0.0, 2e-6);
   EXPECT_LT(r.momentum_error.norm(), 1e-8);
   EXPECT_LT(r.angular_momentum_error.norm(), 1e-8);
+}
+
+// A shaft that is pushed into a wire and slides off beyond its own end: what the wire held is dissipated.
+TEST(LawWire, ShaftThatSlidesOffLeavesItsEnergy) {
+  Motion motion;
+  motion.bodies = {block("visitor", 2.0, {0.02, 0.03, 0.01})};
+  motion.bodies[0].start.position = {0.0, -0.01, 0.0};
+  motion.bodies[0].start.velocity = {0.0, 0.2, 0.4};
+  LawWire w;
+  w.kind = LawWire::Kind::push;
+  w.p_from = {-0.1, 0.0, 0.0};
+  w.p_to = {0.1, 0.0, 0.0};
+  w.shaft.carrier = body_of(0);
+  w.shaft.half_length = 0.04;
+  w.shaft.radius = 6e-3;
+  w.push = [](const Eigen::Vector2d& place, double) {
+    WirePush p;
+    p.depth = place.y();
+    if (p.depth <= 0.0) return p;
+    p.energy = 250.0 * p.depth * p.depth;
+    p.force = {0.0, 500.0 * p.depth};
+    p.by_place << 0.0, 0.0, 0.0, 500.0;
+    return p;
+  };
+  motion.law_wires.push_back(w);
+  const MotionResult r = simulate(motion, fine(0.2, 1e-2), {});
+  ASSERT_TRUE(r.report.usable()) << r.report.message;
+  EXPECT_GT(r.energy.dissipated, 1e-3);
+  EXPECT_EQ(r.energy.strain, 0.0);
+  EXPECT_NEAR(r.energy.integrator, 0.0, 1e-6);
 }
 
 // What is behind the wire when it comes within reach is missed; what was before it is held.
