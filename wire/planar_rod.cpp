@@ -124,7 +124,7 @@ double total_stiffness(double elastic, const std::vector<SliderElement>& sliders
 Cell bend(const Edge& before, const Edge& after, const CellLaw& law, const PlanarRodProperties& p) {
   const double kappa = integrated_curvature(before, after);
   const double ei = law.factor * p.bending_stiffness;
-  if (law.mount_flexibility > 0.0)
+  if (law.mount_flexibility != 0.0)  // also beyond zero, for differences by it
     return turn_with_mount(kappa, total_stiffness(ei, p.bending_sliders), law, p.natural_curvature);
   if (p.bending_sliders.empty())
     return bend_elastic(tangent_measure(kappa), in_series(law.length, ei, 0.0), law.length,

@@ -116,7 +116,8 @@ SpatialCell cell_at(int i, int n, const SpatialEdge& before, const SpatialEdge& 
   } else if (end->kind == SpatialEnd::Kind::clamp) {
     const double flexibility = 1.0 / end->rotational_stiffness;
     add_bending(before.directors, after.directors, length, flexibility, terms, cell);
-    if (flexibility > 0.0) turn_by_angle(before.directors, after.directors, length, flexibility, terms, cell);
+    if (flexibility != 0.0)
+      turn_by_angle(before.directors, after.directors, length, flexibility, terms, cell);
   }
   return cell;
 }

@@ -173,6 +173,20 @@ TEST(MountAxialCompliance, DerivativeAwayFromRigidMountsMatchesDifferences) {
   EXPECT_LT((here.by[0].col(0) - difference).norm(), 5e-3 * difference.norm());
 }
 
+// A fit may begin at rigid clamps: differences by their compliance reach below zero there.
+TEST(MountRotationalCompliance, DerivativeAtRigidClampsMatchesDifferences) {
+  const Parameter& p = parameters().at("mount_rotational_compliance.compliance_rad_Nm");
+  const Model model({series_at(40.0 * mm, 175.0 * mm, 15)}, few_edges());
+  const auto force = [&](double coordinate) -> Eigen::VectorXd {
+    return model.evaluate({{&p, coordinate}}).force[0];
+  };
+  constexpr double h = 1e-4;  // [rad/(N m)]; the wire itself turns by L/EI = 4
+  const Eigen::VectorXd difference = (4.0 * force(h) - force(2.0 * h) - 3.0 * force(0.0)) / (2.0 * h);
+  const Evaluation here = model.evaluate({}, {&p});
+  ASSERT_TRUE(here.complete) << here.message;
+  EXPECT_LT((here.by[0].col(0) - difference).norm(), 5e-3 * difference.norm());
+}
+
 // Of two mounts that give alike each gives by itself; and a push at 40 mm of which the left one gives is the
 // mirror image of one at 135 mm of which the right one does.
 TEST(MountsByThemselves, TogetherAreBothAndMirrorEachOther) {
