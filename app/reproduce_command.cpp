@@ -276,7 +276,8 @@ std::string fits_in_words(const Reproduction& result) {
   std::string words = error_table(result);
   if (const auto& s = result.summary) {
     words += fmt::format(
-        "\npublished numbers: deviance {:.3g}, {:g} degrees of freedom with {} numbers fitted, p = {:.2g}",
+        "\nbest_fit, over the range that the file assumes: deviance {:.3g}, {:g} degrees of freedom with {} "
+        "numbers fitted, p = {:.2g}",
         s->chi2, s->dof, s->numbers, s->p);
   }
   return words;

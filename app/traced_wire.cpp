@@ -110,8 +110,8 @@ Bench leading_bench(const Reproduction& result) {
                    verdict.answer == results::PublishedAnswer::most_likely;
   bench.remarks = {
       verdict.headline,
-      fmt::format("Here {}, fitted to {} readings a series over the range below, of which the paper "
-                  "gives neither (p = {:.2f}).",
+      fmt::format("Here {}, one of these explanations, fitted to {} readings a series over the range "
+                  "below, of which the paper gives neither (p = {:.2f} there).",
                   leader.meaning, leader.readings, leader.p)};
   for (const identification::Setting& s : leader.settings) {
     const identification::Parameter& p = *s.parameter;
@@ -150,7 +150,7 @@ std::string text_of(const Bench& bench, const std::string& command) {
   if (!bench.accepted)
     text +=
         comment("No model was accepted: do not rely on these numbers. They are the nearest that were found.");
-  text += comment("Fitted, with the standard errors that are known; all else is as declared:");
+  text += comment("Fitted; all else is as declared:");
   for (const std::string& number : bench.numbers) text += comment(number);
   if (coupling::needs_space(test))
     text += comment("`snare distil` refuses this file: the push leaves the plane of the wire.");

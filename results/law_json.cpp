@@ -209,14 +209,33 @@ json exports_json(const DistilledCase& one) {
   return result;
 }
 
+/// A stiffness of the left and the right mount over that of the wire [-]; null of a rigid one.
+json mounts_over_wire(double left, double right, double wire) {
+  return {finite(left / wire), finite(right / wire)};
+}
+
+json groups_json(const DistilledCase& one) {
+  const wire::MountSpecification& m = one.wire.test.mount;
+  const wire::WireSpecification& w = one.wire.test.wire;
+  return {{"EA_L2_over_EI", one.groups.axial},
+          {"R_over_L", one.groups.radius},
+          {"friction", one.groups.friction},
+          {"mounts", m.kind == wire::MountKind::clamped  ? "clamped"
+                     : m.kind == wire::MountKind::pinned ? "pinned"
+                                                         : "supports"},
+          {"mount_translation_L_over_EA",
+           mounts_over_wire(m.translational_stiffness_of(0), m.translational_stiffness_of(1),
+                            w.axial_stiffness() / m.span)},
+          {"mount_rotation_L_over_EI",
+           mounts_over_wire(m.rotational_stiffness_of(0), m.rotational_stiffness_of(1),
+                            w.bending_stiffness() / m.span)}};
+}
+
 json case_json(const DistilledCase& one) {
   json places = json::array();
   for (const DistilledPlace& place : one.places) places.push_back(place_json(place));
   const wire::WireSpecification& w = one.wire.test.wire;
-  return {{"groups",
-           {{"EA_L2_over_EI", one.groups.axial},
-            {"R_over_L", one.groups.radius},
-            {"friction", one.groups.friction}}},
+  return {{"groups", groups_json(one)},
           {"wire",
            {{"bending_stiffness_Nm2", w.bending_stiffness()},
             {"axial_stiffness_N", w.axial_stiffness()},

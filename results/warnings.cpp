@@ -2,6 +2,7 @@
 
 #include "coupling/statics/largest_stress.hpp"
 #include "identification/fitting/model.hpp"
+#include "results/in_mm.hpp"
 #include "wire/physical_range.hpp"
 
 #include <fmt/format.h>
@@ -110,6 +111,14 @@ std::vector<std::string> trace_warnings(const identification::Experiment& experi
   const identification::Model model(std::move(series), experiment.solver, false);
   std::vector<std::string> warnings;
   for (const identification::Finding& f : trace.findings) warnings.push_back(f.what);
+  constexpr double too_far = 5.0;  // deviations of a place
+  for (const identification::PlaceEstimate& p : trace.places) {
+    if (p.sigma > 0.0 && std::abs(p.shift) > too_far * p.sigma)
+      warnings.push_back(fmt::format(
+          "series {}: the fit puts the pusher {:.3g} mm from where it is declared, {:.3g} times its standard "
+          "deviation: something else is wrong, and the numbers beside it cannot be relied on",
+          fmt::join(p.series, ", "), in_mm(p.shift), std::abs(p.shift) / p.sigma));
+  }
   for (std::string& w :
        push_warnings(model.apply(trace.final_settings).series, trace.final_predictions, "fitted model"))
     warnings.push_back(std::move(w));

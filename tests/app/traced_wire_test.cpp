@@ -89,7 +89,7 @@ TEST(TracedWire, IsThatOfTheLeadingExplanation) {
   EXPECT_EQ(file.title, "traced wire of \"Static push\": explained");
   for (const char* line :
        {"by the leading explanation of", "# The published fits agree with the declared wire",
-        "# Here the mounts give way and turn, fitted to 6 readings a series over the range below",
+        "# Here the mounts give way and turn, one of these explanations, fitted to 6 readings a series",
         "#   mount_axial_compliance.compliance_m_N = 2e-05 m/N (declared: 0)\n"}) {
     EXPECT_NE(text.find(line), std::string::npos) << line << " in\n" << text;
   }
