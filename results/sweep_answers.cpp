@@ -231,7 +231,7 @@ std::vector<double> values_of_case(const SweepStudy& study, std::uint64_t index,
 
 namespace {
 
-/// Gathers what the cases of a sweep say, one after the other.
+/// Gathers the results of the cases of a sweep, one after the other.
 class Gathering {
  public:
   Gathering(const SweepStudy& study, const SweepCases& cases)

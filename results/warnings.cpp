@@ -116,7 +116,7 @@ std::vector<std::string> trace_warnings(const identification::Experiment& experi
     if (p.sigma > 0.0 && std::abs(p.shift) > too_far * p.sigma)
       warnings.push_back(fmt::format(
           "series {}: the fit puts the pusher {:.3g} mm from where it is declared, {:.3g} times its standard "
-          "deviation: something else is wrong, and the numbers beside it cannot be relied on",
+          "deviation: something else is wrong, and the fitted numbers cannot be relied on",
           fmt::join(p.series, ", "), in_mm(p.shift), std::abs(p.shift) / p.sigma));
   }
   for (std::string& w :

@@ -82,7 +82,7 @@ TurningMeasure tangent_measure(double kappa) {
   return {kappa, slope, 0.5 * kappa * slope};
 }
 
-/// Half a cell beside a mount that gives, whose spring is linear in the angle.               theory.md (W.6)
+/// Half a cell next to a mount that gives, whose spring is linear in the angle.               theory.md (W.6)
 Cell turn_with_mount(double kappa, double ei, const CellLaw& law, double natural_curvature) {
   const SeriesStiffness<double> both = in_series(law.length, ei, law.mount_flexibility);
   const SeriesStiffness<double> a = of_the_angle(both, law.length, ei);

@@ -851,7 +851,7 @@ def tensions_are_read(case, run):
 
 
 def velocity_is_rate(case, run):
-    """What a sensor of velocity reads is the rate of what one of places reads, also beside a body that turns: by differences over one and two intervals."""
+    """What a sensor of velocity reads is the rate of what one of places reads, also with respect to a body that turns: by differences over one and two intervals."""
     free = [b["name"] for b in case.main.get("bodies", []) if not b.get("driven")]
     if len(free) < 2:
         raise Undecided("no two bodies")

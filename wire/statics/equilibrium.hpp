@@ -79,7 +79,7 @@ class EquilibriumSearch {
                mount_round_off(rod.properties().right.translational_stiffness, length_)};
   }
 
-  /// Iterates to the end; the state holds what was found.
+  /// Iterates to the end; leaves the result in the state.
   EquilibriumReport run() {
     evaluate();
     double previous = std::numeric_limits<double>::max();
@@ -139,7 +139,7 @@ class EquilibriumSearch {
   }
 
   /// Shifts the Hessian until it is positive definite, from the last shift on, so that a long descent does
-  /// not search anew.
+  /// not search again.
   void make_positive() {
     double trial = (factored_ && factor_.negative_pivots() == 0)
                        ? 0.0
@@ -165,7 +165,7 @@ class EquilibriumSearch {
     return step;
   }
 
-  /// Halves the step until it is accepted; without one the state is as before, and false.
+  /// Halves the step until it is accepted; else restores the state and returns false.
   bool descend(const Eigen::VectorXd& step) {
     const double old_energy = assembly_.energy, old_residual = residual_;
     const double slope = assembly_.gradient.dot(step);

@@ -357,7 +357,7 @@ TEST(LawWire, PushesKeepEnergyAndMomentum) {
   EXPECT_LT(r.angular_momentum_error.norm(), 1e-8);
 }
 
-// A shaft that is pushed into a wire and slides off beyond its own end: what the wire held is dissipated.
+// A shaft that is pushed into a wire and slides off beyond its own end: the energy of the law is dissipated.
 TEST(LawWire, ShaftThatSlidesOffLeavesItsEnergy) {
   Motion motion;
   motion.bodies = {block("visitor", 2.0, {0.02, 0.03, 0.01})};
