@@ -215,7 +215,7 @@ void add_export(CLI::App& app, snare::app::ExportOptions& asked, CommonOptions& 
       "50,100,0");
 }
 
-/// A verb of the list with what stands behind it on the command line.
+/// A verb of the list with its options and its file on the command line.
 struct Parsed {
   CLI::App* command = nullptr;
   CommonOptions options;
@@ -236,7 +236,7 @@ void add_verb(CLI::App& app, const Verb& verb, Parsed& parsed) {
     parsed.command->add_option("--against", options.against,
                                "CSV file of a history that is scored on the case, too");
     parsed.command->add_flag("--archive", options.archive,
-                             "make the archived histories anew, beside the file");
+                             "make the archived histories again, in the folder of the file");
   }
   parsed.command->footer(std::string("Example: ") + verb.example);
 }

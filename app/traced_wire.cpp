@@ -41,7 +41,7 @@ std::string with_spaces(std::string kind) {
   return kind;
 }
 
-/// A fitted number on a line: "wire.length_mm = 175.6 +- 0.04 mm (declared: 180)". error: as it stands there.
+/// A fitted number on a line: "wire.length_mm = 175.6 +- 0.04 mm (declared: 180)". error: " +- 0.04".
 std::string line_of(const std::string& key, double value, const std::string& error, const std::string& unit,
                     double declared) {
   std::string line = fmt::format("  {} = {:.6g}{}", key, value, error);
@@ -89,11 +89,11 @@ std::string asked(const Model::Applied& applied) {
   return text;
 }
 
-/// A test with numbers fitted to it, and what is said of them.
+/// A test with numbers fitted to it, and the comments of the file.
 struct Bench {
   const Experiment& experiment;
   const std::vector<identification::Setting>& settings;
-  std::string of;    ///< "the tracing": what has it
+  std::string of;    ///< "the tracing", "the leading explanation"
   std::string kind;  ///< of the verdict, in words
   bool accepted = false;
   std::vector<std::string> remarks = {}, numbers = {};
@@ -128,7 +128,7 @@ Bench traced_bench(const Reproduction& result) {
   bench.accepted = trace.explained || trace.kind == identification::VerdictKind::partly_explained;
   bench.remarks = {"Verdict: " + bench.kind + ". " + results::verdict(trace)};
   if (trace.interrupted)
-    bench.remarks.emplace_back("The tracing was interrupted: this is what it had found.");
+    bench.remarks.emplace_back("The tracing was interrupted: these are its last numbers.");
   std::string effects;
   for (const std::string& effect : trace.selected) effects += (effects.empty() ? "" : ", ") + effect;
   if (!effects.empty()) bench.remarks.push_back("Effects that the tracing added: " + effects + ".");

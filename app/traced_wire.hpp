@@ -8,7 +8,7 @@ namespace snare::app {
 
 /// Returns traced.toml: wire, mounts and pusher of the leading explanation of published fits, else of the
 /// final model of the tracing, as a `snare-wire/1` file (docs/wire_file.md); empty where there is neither.
-/// Comments state what was traced, the verdict, the command and every fitted number, of a tracing with its
+/// Comments state the experiment, the verdict, the command and every fitted number, of a tracing with its
 /// standard error; title and comments say so where no model is accepted.
 ///
 /// The wire is that of the first series. Simple laws are asked at the places of the series (the first 32

@@ -2,6 +2,7 @@
 
 #include "coupling/dynamics/model/start.hpp"
 #include "coupling/dynamics/run/simulate.hpp"
+#include "scenario/mount_reader.hpp"
 #include "scenario/push_law.hpp"
 #include "wire/motion/rod_in_motion.hpp"
 
@@ -95,25 +96,27 @@ double damping_of_restitution(const numerics::HermiteCurve& law, double restitut
 
 namespace {
 
-/// Gives the ends of a wire in motion the mounts of a push.
-void set_mounts(const wire::MountSpecification& mount, wire::SpatialRodProperties& rod) {
-  for (const wire::End which : wire::ends) {
-    wire::SpatialEnd& end = rod.end(which);
-    end.kind = mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp
-                                                      : wire::SpatialEnd::Kind::twisting_pin;
-    end.rotational_stiffness = mount.rotational_stiffness_of(index_of(which));
-    end.translational_stiffness = mount.translational_stiffness_of(index_of(which));
+/// The mounts of a push as those of a wire in a scenario.
+scenario::WireMounts mounts_of(const wire::MountSpecification& mount) {
+  scenario::WireMounts mounts;
+  mounts.kind = mount.kind == wire::MountKind::clamped ? wire::SpatialEnd::Kind::clamp
+                                                       : wire::SpatialEnd::Kind::twisting_pin;
+  for (std::size_t k = 0; k < 2; ++k) {
+    mounts.give[k].stiffness = mount.translational_stiffness_of(k);
+    mounts.rotational_stiffness[k] = mount.rotational_stiffness_of(k);
   }
+  return mounts;
 }
 
-/// Springs along the chord at the ends of the only wire become mounts of the motion.
-void add_mounts(coupling::Motion& motion) {
+/// Holds the only wire by mounts of the motion where they give along the chord, in place of springs of its
+/// own.
+void add_mounts(const scenario::WireMounts& mounts, coupling::Motion& motion) {
   coupling::MotionWire& held = motion.wires.front();
   for (const wire::End which : wire::ends) {
     coupling::MotionMount mount;
-    mount.give.stiffness = std::exchange(held.rod.properties.end(which).translational_stiffness,
-                                         std::numeric_limits<double>::infinity());
+    mount.give = mounts.give[index_of(which)];
     if (!mount.give.gives()) continue;
+    held.rod.properties.end(which).translational_stiffness = std::numeric_limits<double>::infinity();
     mount.name = held.name + (which == wire::End::left ? " left mount" : " right mount");
     mount.end = which;
     motion.mounts.push_back(mount);
@@ -124,7 +127,8 @@ void add_mounts(coupling::Motion& motion) {
 coupling::Motion meeting(const coupling::PushProblem& test, const ImpactSettings& settings, double speed,
                          double side) {
   wire::RodInMotion rod = wire::rod_in_motion(test.wire, test.mount.span, settings.elements);
-  set_mounts(test.mount, rod.properties);
+  const scenario::WireMounts mounts = mounts_of(test.mount);
+  mounts.set(rod.properties);
   rod.damping = settings.damping;
   const Eigen::Matrix3Xd rest = coupling::resting_wire(rod);
   const double wire_radius = 0.5 * test.wire.diameter;
@@ -133,7 +137,7 @@ coupling::Motion meeting(const coupling::PushProblem& test, const ImpactSettings
   coupling::Motion motion;
   motion.gravity = {test.gravity[0], test.gravity[1], test.gravity[2]};
   motion.wires.push_back({"wire", rod, rest, {}, {}});
-  add_mounts(motion);
+  add_mounts(mounts, motion);
   coupling::MotionBody body;
   body.properties.mass = 2.0 * settings.mass;
   body.properties.inertia = settings.mass * Eigen::Matrix3d::Identity();

@@ -46,7 +46,7 @@ struct RefittedLeader {
   double p = 1.0;                                 ///< SummaryStatistics::p there
   std::map<std::string, double> values;           ///< by key, in the unit of the key
   identification::Experiment experiment;          ///< the declared test of this explanation, over its ranges
-  std::vector<identification::Setting> settings;  ///< what is fitted of it
+  std::vector<identification::Setting> settings;  ///< its fitted numbers
 };
 
 /// What `snare reproduce` computes. A run that was interrupted has fewer models, no trace, no map.

@@ -115,7 +115,7 @@ void prepare_on_supports(const PushProblem& test, const wire::MaterialMesh& mesh
   rest_on_supports(setup, controls);
 }
 
-/// The loose wire between mounts that hold. Of an unstable shape the contact vertex is moved to where the
+/// The loose wire between mounts that hold. In an unstable shape the contact vertex is moved to where the
 /// pusher comes, so that Newton's method does not wander off to another shape: `controls` say where it is.
 wire::LooseWire loose_wire(const PushProblem& test, const wire::MaterialMesh& mesh, wire::Controls& controls,
                            int& iterations) {

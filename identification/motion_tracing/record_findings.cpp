@@ -1,5 +1,7 @@
 #include "identification/motion_tracing/record_findings.hpp"
 
+#include "identification/motion_tracing/record_stage.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -138,6 +140,19 @@ std::vector<Finding> number_findings(const RecordStage& stage, const std::vector
     findings.push_back(std::move(f));
   }
   return findings;
+}
+
+std::optional<std::string> lower_minimum(const RecordModel& model, const RecordFit& fit, FitMethod method) {
+  if (fit.lower.empty()) return std::nullopt;
+  RecordFit there = fit;
+  there.settings = fit.lower;
+  std::string where;
+  for (const TracedNumber& n : traced_numbers(model, there))
+    where += fmt::format("{}{} = {:.6g} {}", where.empty() ? "" : ", ", n.key, n.value, n.unit);
+  return fmt::format(
+      "the fit has not ended at its least sum of squares, which is clearly lower at {}: its numbers and "
+      "intervals cannot be relied on; begin there{}",
+      where, method == FitMethod::nelder_mead ? ", take a smaller fit.simplex_change, or gauss_newton" : "");
 }
 
 }  // namespace snare::identification

@@ -2,6 +2,8 @@
 
 #include "identification/motion_tracing/record_trace.hpp"
 
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace snare::identification {
@@ -17,5 +19,9 @@ namespace snare::identification {
 /// settings: of the numbers, with what is declared.
 [[nodiscard]] std::vector<Finding> number_findings(const RecordStage& stage,
                                                    const std::vector<RecordSetting>& settings);
+
+/// A warning where find_rank() has met a clearly lower sum of squares near the answer of a fit; else none.
+[[nodiscard]] std::optional<std::string> lower_minimum(const RecordModel& model, const RecordFit& fit,
+                                                       FitMethod method);
 
 }  // namespace snare::identification

@@ -20,7 +20,7 @@ namespace {
 constexpr double usual_share = 0.01;  // of a channel's rms less its mean: an error below is called no error
 constexpr double like_noise = 0.002;  // p below which a residual is none
 constexpr int most_reweighings = 3;
-constexpr int most_restarts = 3;  // of a fit beside which chi2 falls
+constexpr int most_restarts = 3;  // of a fit that is near a lower chi2
 
 /// Everything that is kept along the way.
 class Tracer {
@@ -141,7 +141,7 @@ class Tracer {
             "to that in part only",
             record.name, length, slow->period, slow->of));
     }
-    if (!current_.lower.empty()) warn_of_lower();
+    if (const auto lower = lower_minimum(model_, current_, set_.method)) trace_.warnings.push_back(*lower);
     for (const TracedNumber& n : trace_.final.numbers) {
       const bool of_file = std::any_of(set_.free.begin(), set_.free.end(), [&](const FreeNumber& f) {
         return f.key == n.key && !(f.lower && *f.lower < 0.0);
@@ -152,18 +152,6 @@ class Tracer {
             "{} is not identifiable from these records: {:.4g} with a standard error of {:.4g} {}", n.key,
             n.value, n.stderr_, n.unit));
     }
-  }
-  void warn_of_lower() {
-    RecordFit there = current_;
-    there.settings = current_.lower;
-    std::string where;
-    for (const TracedNumber& n : traced_numbers(model_, there))
-      where += fmt::format("{}{} = {:.6g} {}", where.empty() ? "" : ", ", n.key, n.value, n.unit);
-    trace_.warnings.push_back(fmt::format(
-        "the fit has not ended at its least sum of squares, which is clearly lower at {}: its numbers and "
-        "intervals cannot be relied on; begin there{}",
-        where,
-        set_.method == FitMethod::nelder_mead ? ", take a smaller fit.simplex_change, or gauss_newton" : ""));
   }
   void reached() {
     if (!options_.reached) return;
@@ -224,13 +212,12 @@ class Tracer {
     return fit;
   }
 
-  /// Asks which numbers of the present model the records determine. Where chi2 falls beside its answer a fit
-  /// has not ended and goes on from there; a simplex ends where it was told to.
+  /// Asks which numbers of the present model the records determine. Where chi2 is lower near its answer a fit
+  /// has not ended and continues from there, except a simplex, which ends early where the file asks for it.
   void settle() {
     for (int k = 0;; ++k) {
       find_rank(model_, data_, current_);
-      const bool goes_on = !current_.lower.empty() && set_.method == FitMethod::gauss_newton;
-      if (!goes_on || k == most_restarts || stop_) return;
+      if (current_.lower.empty() || set_.method != FitMethod::gauss_newton || k == most_restarts) return;
       RecordFitOptions options;
       options.progress = asked();
       RecordFit lower = fit_motion(model_, data_, current_.lower, options);
