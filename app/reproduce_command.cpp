@@ -206,6 +206,10 @@ std::optional<RefittedLeader> leading_refitted(Experiment experiment, const nloh
   experiment = coarse(std::move(experiment));
   if (hypothesis->change != nullptr)
     for (Series& s : experiment.series) hypothesis->change(s.test);
+  std::vector<identification::QuadraticLaw> laws;
+  for (const Series& s : experiment.series) laws.push_back(*s.law);
+  laws = identification::before_print(std::move(laws), *hypothesis);
+  for (std::size_t k = 0; k < laws.size(); ++k) experiment.series[k].law = laws[k];
   const identification::Model model(experiment.series, experiment.solver);
   std::vector<identification::Setting> start;
   for (const auto& [key, value] : (*entry)["values"].items()) {

@@ -111,6 +111,7 @@ Eigen::MatrixXd spline_slopes(const std::vector<double>& knots, SplineEnd upper)
 HermiteCurve::HermiteCurve(std::vector<double> knots, std::vector<double> values, std::vector<double> slopes)
     : knots_(std::move(knots)), values_(std::move(values)), slopes_(std::move(slopes)) {
   assert(knots_.size() >= 2 && values_.size() == knots_.size() && slopes_.size() == knots_.size());
+  cells_per_x_ = static_cast<double>(knots_.size() - 1) / (knots_.back() - knots_.front());
   area_.assign(knots_.size(), 0.0);
   for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
     const double h = knots_[i + 1] - knots_[i];
@@ -128,7 +129,7 @@ HermiteCurve::HermiteCurve(std::vector<double> knots, std::vector<double> values
       }()) {}
 
 double HermiteCurve::value(double x) const noexcept {
-  const std::size_t i = find_cell(knots_.data(), knots_.size(), x);
+  const std::size_t i = cell(x);
   const double h = knots_[i + 1] - knots_[i];
   const double t = (x - knots_[i]) / h;
   const double u = 1.0 - t;
@@ -137,7 +138,7 @@ double HermiteCurve::value(double x) const noexcept {
 }
 
 double HermiteCurve::slope(double x) const noexcept {
-  const std::size_t i = find_cell(knots_.data(), knots_.size(), x);
+  const std::size_t i = cell(x);
   const double h = knots_[i + 1] - knots_[i];
   const double t = (x - knots_[i]) / h;
   const double u = 1.0 - t;
@@ -146,7 +147,7 @@ double HermiteCurve::slope(double x) const noexcept {
 }
 
 double HermiteCurve::curvature(double x) const noexcept {
-  const std::size_t i = find_cell(knots_.data(), knots_.size(), x);
+  const std::size_t i = cell(x);
   const double h = knots_[i + 1] - knots_[i];
   const double t = (x - knots_[i]) / h;
   return 6.0 * (1.0 - 2.0 * t) * (values_[i + 1] - values_[i]) / (h * h) +
@@ -154,7 +155,7 @@ double HermiteCurve::curvature(double x) const noexcept {
 }
 
 double HermiteCurve::integral(double x) const noexcept {
-  const std::size_t i = find_cell(knots_.data(), knots_.size(), x);
+  const std::size_t i = cell(x);
   const double h = knots_[i + 1] - knots_[i];
   const double t = (x - knots_[i]) / h;
   const double t2 = t * t;

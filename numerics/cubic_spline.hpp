@@ -52,8 +52,18 @@ class HermiteCurve {
   [[nodiscard]] const std::vector<double>& slopes() const noexcept { return slopes_; }
 
  private:
+  [[nodiscard]] std::size_t cell(double x) const noexcept {
+    const double guess = (x - knots_.front()) * cells_per_x_;
+    if (guess >= 0.0 && guess < static_cast<double>(knots_.size() - 1)) {
+      const auto i = static_cast<std::size_t>(guess);
+      if (x >= knots_[i] && x < knots_[i + 1]) return i;  // always so where the knots are evenly spread
+    }
+    return find_cell(knots_.data(), knots_.size(), x);
+  }
+
   std::vector<double> knots_, values_, slopes_;
   std::vector<double> area_;  // integral up to each knot
+  double cells_per_x_ = 0.0;
 };
 
 /// Slopes held to [0, 3 secants] where the values ascend, so that the cubic through them ascends too (Fritsch

@@ -277,6 +277,15 @@ IdaAdvance Ida::advance(double limit, double max_step) {
   m.callbacks.limiting_unknown = -1;
   const int code = IDASolve(m.ida.get(), stop, &reached, m.y_view.get(), m.rate_view.get(), IDA_ONE_STEP);
   m.update_counts();
+  const bool after_event = std::ranges::any_of(m.events, [](int e) { return e != 0; });
+  if (code == IDA_ILL_INPUT && after_event && !m.starting) {
+    // An event function was zero at the event and, to the last bit, just after it: IDA takes that for an error,
+    // but not at a start.
+    const Eigen::VectorXd y = m.y, rate = m.rate;
+    m.begin(m.time, y, rate);
+    std::fill(m.events.begin(), m.events.end(), 0);
+    return advance(limit, max_step);
+  }
   if (code < 0) {
     // The views hold the last accepted state.
     m.fail(code, "IDASolve");

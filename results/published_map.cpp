@@ -213,7 +213,7 @@ std::string to_string(PublishedAnswer answer) {
 }
 
 std::string published_inputs(const Experiment& experiment) {
-  std::string all = "2;";  // of the method
+  std::string all = "3;";  // of the method
   for (const identification::Series& s : experiment.series) {
     const coupling::PushProblem& t = s.test;
     all +=

@@ -34,15 +34,23 @@ enum class ContactStatus {
   wrapped    ///< the wire lies on the pusher over an arc: see WrappedContact
 };
 
-/// Work of a friction over the slips of one step after the other.                    theory.md (C.5)
+/// Work of a friction over the slips of one step after the other, along a path with a parameter (travel) [m].
+///                                                                                     theory.md (C.5)
 struct SlipWork {
-  double slip = 0.0;   ///< of the step before [m], its sign the direction
-  double begin = 0.0;  ///< friction at the beginning of that step [N], >= 0
+  double slip = 0.0;    ///< of the step before [m], its sign the direction
+  double begin = 0.0;   ///< friction at the beginning of that step [N], >= 0
+  double end = 0.0;     ///< parameter at the end of that step [m]
+  double length = 0.0;  ///< of that step, in the parameter [m]
 
-  /// Of the next step [J], >= 0: by the parabola through the friction at its ends and at `begin`; by a
-  /// straight line where the slip has turned round or the step before was short. next: slip [m]; from, to:
+  /// Of the next step [J], >= 0: by the parabolas, over the parameter, through the friction and the place at
+  /// its ends and at the beginning of the step before; by the mean friction where the slip or the path has
+  /// turned round or the step before was short. next: slip [m]; at: parameter at its end [m]; from, to:
   /// friction at its ends [N], >= 0.
-  [[nodiscard]] double over(double next, double from, double to) const;
+  [[nodiscard]] double over(double next, double at, double from, double to) const;
+  /// What is to be remembered of that step.
+  [[nodiscard]] SlipWork after(double next, double at, double from) const {
+    return {next, from, at, at - end};
+  }
 };
 
 /// A round, rigid pin that the wire slides over at a mesh-carrying vertex.          theory.md (C.2)-(C.6)
@@ -62,7 +70,7 @@ struct SlidingContact {
   ContactStatus status = ContactStatus::slip;
   /// Of the increase of material coordinate + side R angle, when it slips: +1, -1 [-]
   double slip_sign = 0.0;
-  /// The material point never changes (the gauge of a wire on supports)
+  /// The gauge of a wire on supports: the material point never changes; with friction it rolls
   bool holds_material = false;
   double last_coordinate = 0.0;  ///< material coordinate at the last accepted state [m]
   Eigen::Vector2d last_tangent = Eigen::Vector2d::UnitX();  ///< t at the last accepted state

@@ -17,18 +17,21 @@ double slip_of(const SlidingContact& contact, const VertexTangent& now, double c
          contact.side * contact.radius * angle_between(contact.last_tangent, now.t);
 }
 
-double friction_work(const PushSystem& system, const numerics::PathPoint& before,
-                     const numerics::PathPoint& now) {
+double friction_work(const PushSystem& system, const ContactStates& states_before,
+                     const numerics::PathPoint& before, const numerics::PathPoint& now) {
   const wire::PlanarState state = system.state(now);
   double work = 0.0;
   for (std::size_t k = 0; k < system.sliding.size(); ++k) {
     const SlidingContact& contact = system.sliding[k];
-    if (contact.friction == 0.0 || contact.status != ContactStatus::slip || contact.holds_material) continue;
+    const ContactStatus slid =
+        contact.status == ContactStatus::open ? states_before.sliding[k].status : contact.status;
+    if (contact.friction == 0.0 || slid != ContactStatus::slip || contact.holds_material) continue;
     const VertexTangent v = system.tangent_at(contact, state);
     const SlidingRows rows = system.sliding_rows(k);
     const double last = std::abs(contact.last_force.dot(contact.last_tangent));
     const double force = std::abs(now.border.segment<2>(rows.force).dot(v.t));
-    work += contact.slip_work.over(slip_of(contact, v, now.border[rows.coordinate]), last, force);
+    work +=
+        contact.slip_work.over(slip_of(contact, v, now.border[rows.coordinate]), now.parameter, last, force);
   }
   const Vector2d centre = system.pusher_centre(now);
   for (std::size_t k = 0; k < system.wrapped.size(); ++k) {
@@ -38,7 +41,8 @@ double friction_work(const PushSystem& system, const numerics::PathPoint& before
     const Vector2d& r = contact.last_radial;
     const double last = std::abs(contact.last_force.dot(left_of(r)));
     const double force = std::abs(now.border.segment<2>(system.wrapped_rows(k).force).dot(left_of(n)));
-    work += contact.slip_work.over(system.sliding[0].radius * angle_between(r, n), last, force);
+    work +=
+        contact.slip_work.over(system.sliding[0].radius * angle_between(r, n), now.parameter, last, force);
   }
   if (before.border.size() != now.border.size()) return work;
   for (std::size_t k = 0; k < system.mounts.size(); ++k) {

@@ -19,9 +19,10 @@ struct PinForce {
 /// coordinate: S now.
 [[nodiscard]] double slip_of(const SlidingContact& contact, const VertexTangent& now, double coordinate);
 
-/// Friction work between the remembered state and `now` [J], >= 0 (trapezoidal in the force).
-[[nodiscard]] double friction_work(const PushSystem& system, const numerics::PathPoint& before,
-                                   const numerics::PathPoint& now);
+/// Friction work between the remembered state and `now` [J], >= 0 (trapezoidal in the force). states_before:
+/// of the contacts at the remembered state: one that has opened since slid until then.
+[[nodiscard]] double friction_work(const PushSystem& system, const ContactStates& states_before,
+                                   const numerics::PathPoint& before, const numerics::PathPoint& now);
 
 /// Sums of the pusher's normal forces and of its friction forces (along the wire's tangent) [N].
 struct PusherForces {

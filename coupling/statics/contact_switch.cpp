@@ -157,8 +157,9 @@ void remember_contact(PushSystem& system, const numerics::PathPoint& point) {
     SlidingContact& contact = system.sliding[k];
     const SlidingRows rows = system.sliding_rows(k);
     const VertexTangent tangent = system.tangent_at(contact, state);
-    contact.slip_work = {slip_of(contact, tangent, point.border[rows.coordinate]),
-                         std::abs(contact.last_force.dot(contact.last_tangent))};
+    contact.slip_work =
+        contact.slip_work.after(slip_of(contact, tangent, point.border[rows.coordinate]), point.parameter,
+                                std::abs(contact.last_force.dot(contact.last_tangent)));
     contact.last_coordinate = point.border[rows.coordinate];
     contact.last_tangent = tangent.t;
     contact.last_force = point.border.segment<2>(rows.force);
@@ -168,8 +169,9 @@ void remember_contact(PushSystem& system, const numerics::PathPoint& point) {
   for (std::size_t k = 0; k < system.wrapped.size(); ++k) {
     WrappedContact& contact = system.wrapped[k];
     const Eigen::Vector2d radial = (wire::vertex(state, contact.node) - centre).normalized();
-    contact.slip_work = {system.sliding[0].radius * angle_between(contact.last_radial, radial),
-                         std::abs(contact.last_force.dot(left_of(contact.last_radial)))};
+    contact.slip_work = contact.slip_work.after(
+        system.sliding[0].radius * angle_between(contact.last_radial, radial), point.parameter,
+        std::abs(contact.last_force.dot(left_of(contact.last_radial))));
     contact.last_radial = radial;
     contact.last_force = point.border.segment<2>(system.wrapped_rows(k).force);
   }

@@ -216,7 +216,7 @@ void PlanarPush::accept(const ContactStates& states_before) {
   assembled_at_ = trial_.parameter;
   const double before = point_.parameter;
   const std::vector<PushEvent::Kind> events = contact_events(states_before, system_);
-  dissipated_ += friction_work(system_, point_, trial_);
+  dissipated_ += friction_work(system_, states_before, point_, trial_);
   if (sensitivity_ && own_steps_ && !trying_) {
     sensitivity_->carry_sections(states_before.sections, system_, trial_.parameter);
     differentiate(trial_);

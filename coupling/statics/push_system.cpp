@@ -281,10 +281,10 @@ void PushSystem::assemble_sliding(std::size_t index, const wire::PlanarState& s,
   }
   residual[rows.closure] = gap;
   corner(rows.closure, rows.gap) = 1.0;
-  if (contact.holds_material) {
+  if (contact.holds_material && contact.friction == 0.0) {
     residual[rows.slip] = coordinate - contact.last_coordinate;
     corner(rows.slip, rows.coordinate) = 1.0;
-  } else if (contact.status == ContactStatus::stick) {
+  } else if (contact.holds_material || contact.status == ContactStatus::stick) {
     // Rolling: dS + side R d angle = 0.                                                       theory.md (C.5)
     residual[rows.slip] = coordinate - contact.last_coordinate +
                           contact.side * contact.radius * angle_between(contact.last_tangent, v.t);

@@ -103,8 +103,8 @@ void SpatialContact::accept(const numerics::PathPoint& point) {
   // Where the friction has turned round, that at the end of the slip.
   const bool turned = g.friction.dot(last_friction_) <= 0.0;
   const double from = turned ? g.friction.norm() : last_friction_.norm();
-  if (slides_) dissipated_ += slip_work_.over(slip.norm(), from, g.friction.norm());
-  slip_work_ = {turned ? 0.0 : slip.norm(), from};
+  if (slides_) dissipated_ += slip_work_.over(slip.norm(), point.parameter, from, g.friction.norm());
+  slip_work_ = slip_work_.after(turned ? 0.0 : slip.norm(), point.parameter, from);
   last_friction_ = g.friction;
   system_.accept(point);
   pin.last_coordinate = point.border[Rows::coordinate];

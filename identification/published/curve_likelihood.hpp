@@ -20,7 +20,7 @@ struct TouchCurve {
 /// The zero of the recorded travel is unknown, evenly within so much either way [m].
 inline constexpr double largest_zero = 4e-3;
 
-/// Scatters that are looked at: log sigma - FitCell::log_scatter, evenly spread.
+/// Scatters that are looked at: log sigma - FitCell::log_scatter from here on, to the nearest steps.
 inline constexpr double first_scatter = -1.5, scatter_step = 0.25;
 inline constexpr Eigen::Index scatters = 13;
 

@@ -16,12 +16,20 @@ double taut_height(const coupling::PushProblem& test) {
   return std::sqrt(std::max(0.0, (a * a - c * c) * (1.0 - x * x / (a * a))));
 }
 
+bool is_taut(const FitRange& range) {
+  return range.kind == FitRange::Kind::taut_from_touch || range.kind == FitRange::Kind::taut_from_chord;
+}
+
 }  // namespace
 
 std::string to_string(FitRange::Kind kind) {
   switch (kind) {
     case FitRange::Kind::common:
       return "common";
+    case FitRange::Kind::own:
+      return "own";
+    case FitRange::Kind::own_even:
+      return "own_even";
     case FitRange::Kind::taut_from_touch:
       return "taut_from_touch";
     case FitRange::Kind::taut_from_chord:
@@ -57,6 +65,9 @@ FitRanges::FitRanges(const std::vector<Series>& series, const std::vector<double
   };
   for (int i = 0; i < options.bins; ++i)
     ranges_.push_back({FitRange::Kind::common, std::vector<double>(laws_.size(), edge(i + 1)), edge(i)});
+  if (laws_.size() > 1)
+    for (const FitRange::Kind kind : {FitRange::Kind::own, FitRange::Kind::own_even})
+      ranges_.push_back({kind, std::vector<double>(laws_.size(), options.most), options.least});
   FitRange from_touch{FitRange::Kind::taut_from_touch, {}}, from_chord{FitRange::Kind::taut_from_chord, {}};
   for (std::size_t k = 0; k < laws_.size(); ++k) {
     const double height = taut_height(series[k].test);
@@ -85,9 +96,19 @@ FitCells FitRanges::at(const std::vector<double>& to, std::size_t readings) cons
 void FitRanges::fill() {
   edges_.clear();
   taut_.clear();
+  single_.clear();
   edges_.push_back(at(std::vector<double>(laws_.size(), ranges_.front().from)));
+  for (std::size_t r = 0; r < bins(); ++r) edges_.push_back(at(ranges_[r].to));
   for (const FitRange& range : ranges_)
-    (range.kind == FitRange::Kind::common ? edges_ : taut_).push_back(at(range.to));
+    if (is_taut(range)) taut_.push_back(at(range.to));
+  if (laws_.size() == 1) return;
+  for (const QuadraticLaw& law : laws_) {
+    FitRanges& one = single_.emplace_back(FitRanges(options_));
+    one.laws_ = {law};
+    for (std::size_t r = 0; r < bins(); ++r)
+      one.ranges_.push_back({FitRange::Kind::common, {ranges_[r].to[0]}, ranges_[r].from});
+    one.fill();
+  }
 }
 
 FitRanges FitRanges::of(const std::vector<QuadraticLaw>& laws) const {
@@ -104,12 +125,15 @@ double FitRanges::longest() const {
 }
 
 double FitRanges::mass(std::size_t range, bool uniform) const {
-  const double taut = taut_.empty() ? 0.0 : 0.5, counts = static_cast<double>(options_.readings.size());
-  if (range >= bins()) return taut / static_cast<double>(taut_.size()) / counts;
-  const double share = uniform
-                           ? (ranges_[range].to[0] - ranges_[range].from) / (options_.most - options_.least)
-                           : 1.0 / static_cast<double>(bins());
-  return (1.0 - taut) * share / counts;
+  const FitRange& r = ranges_[range];
+  const double taut = taut_.empty() ? 0.0 : 0.5, own = single_.empty() ? 0.0 : 0.5 * (1.0 - taut);
+  const double one = 1.0 / static_cast<double>(options_.readings.size());
+  if (is_taut(r)) return taut / static_cast<double>(taut_.size()) * one;
+  if (r.kind != FitRange::Kind::common)
+    return (r.kind == FitRange::Kind::own_even) == uniform ? own * one : 0.0;
+  const double share =
+      uniform ? (r.to[0] - r.from) / (options_.most - options_.least) : 1.0 / static_cast<double>(bins());
+  return (1.0 - taut - own) * share * one;
 }
 
 }  // namespace snare::identification

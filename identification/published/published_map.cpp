@@ -51,23 +51,34 @@ double value_at(const PriorNumber& n, double u) {
   return n.logarithmic ? n.lower * std::pow(n.upper / n.lower, u) : n.lower + (n.upper - n.lower) * u;
 }
 
-/// The largest log p over ranges and numbers of readings if every published parabola were exact, with a
-/// scatter of its own.
+/// Density of what is printed by that of what was fitted: a coefficient that is divided by 100 has 100 times
+/// the density.
+double log_density_of_print(const Hypothesis& hypothesis) {
+  return hypothesis.decimal_point ? std::log(100.0) : 0.0;
+}
+
+/// log p of a published fit whose parabola is exact, with a scatter of its own.
+double of_parabola(const FitCell& cell) {
+  const auto components = static_cast<double>(cell.basis.cols() - 3);
+  return length_probability(cell.numbers.lower, cell.numbers.upper, components, 0.0, cell.log_scatter).log -
+         3.0 * cell.log_scatter + cell.log_scale;
+}
+
+/// The largest log p over ranges and numbers of readings if every published parabola were exact.
 double of_parabolas(const FitRanges& ranges) {
   double best = impossible;
-  for (const std::vector<FitCells>& some : {ranges.edges(), ranges.taut()}) {
-    for (const FitCells& cells : some) {
-      for (std::size_t n = 0; n < ranges.readings().size(); ++n) {
-        double sum = 0.0;
-        for (std::size_t k = 0; k < ranges.series(); ++k) {
-          const FitCell& cell = cells.cell(n, k);
-          const auto components = static_cast<double>(cell.basis.cols() - 3);
-          sum += length_probability(cell.numbers.lower, cell.numbers.upper, components, 0.0, cell.log_scatter)
-                     .log -
-                 3.0 * cell.log_scatter + cell.log_scale;
-        }
-        best = std::max(best, sum);
-      }
+  for (std::size_t n = 0; n < ranges.readings().size(); ++n) {
+    double own = 0.0;
+    for (std::size_t k = 0; k < ranges.series(); ++k) {
+      double largest = impossible;
+      for (const FitCells& edge : ranges.edges()) largest = std::max(largest, of_parabola(edge.cell(n, k)));
+      own += largest;
+    }
+    best = std::max(best, own);
+    for (const FitCells& cells : ranges.taut()) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < ranges.series(); ++k) sum += of_parabola(cells.cell(n, k));
+      best = std::max(best, sum);
     }
   }
   return best;
@@ -130,7 +141,7 @@ class HypothesisSampling {
   HypothesisSampling(const Experiment& experiment, const FitRanges& ranges, const Hypothesis& hypothesis,
                      const MapOptions& options, double leading)
       : hypothesis_(hypothesis),
-        ranges_(ranges),
+        ranges_(ranges.of(before_print(ranges.laws(), hypothesis))),
         computed_(experiment, ranges, hypothesis_, options.elements),
         columns_(ranges.readings().size()),
         batch_(options.batch * static_cast<int>(hypothesis.numbers.size())),
@@ -171,10 +182,12 @@ class HypothesisSampling {
     std::vector<double> largest(points.size());
     base::parallel_for(points.size(), [&](std::size_t i) {
       values_[before + i] = computed_.values(points[i]);
-      RangeProfile profile = range_profile(ranges_, computed_.curves(values_[before + i]), floor);
+      RangeProfile profile = range_profile(ranges_, computed_.curves(values_[before + i]),
+                                           floor - log_density_of_print(hypothesis_));
+      for (double& log : profile.log) log += log_density_of_print(hypothesis_);
       logs_[before + i] = std::move(profile.log);
       best_to_[before + i] = std::move(profile.best_to);
-      largest[i] = profile.largest;
+      largest[i] = profile.largest + log_density_of_print(hypothesis_);
     });
     std::vector<double> result;
     for (std::size_t i = before; i < logs_.size(); ++i) {
@@ -186,11 +199,12 @@ class HypothesisSampling {
   [[nodiscard]] std::vector<std::vector<double>> likely(const MapCell& leading) const;
 
   Hypothesis hypothesis_;
-  const FitRanges& ranges_;
+  FitRanges ranges_;
   Computed computed_;
   std::size_t columns_;
   int batch_, batches_ = 0;
-  std::vector<std::vector<double>> logs_, best_to_, values_;  // one a computed test
+  std::vector<std::vector<double>> logs_, values_;         // one a computed test
+  std::vector<std::vector<std::vector<double>>> best_to_;  // likewise, by range and number of readings
   double leading_, best_ = impossible;
   ImportanceSampler sampler_;
 };
@@ -208,10 +222,9 @@ HypothesisMap HypothesisSampling::map() const {
       if (logs_[s][c] > logs_[best][c]) best = s;
     }
     const FitRange& range = ranges_.ranges()[c / columns_];
-    const double to = best_to_[best][c];
-    MapCell cell{c / columns_,   c % columns_,
-                 log_sum(terms), logs_[best][c],
-                 values_[best],  to > 0.0 ? std::vector<double>(ranges_.series(), to) : range.to};
+    const std::vector<double>& to = best_to_[best][c];
+    MapCell cell{c / columns_,   c % columns_,  log_sum(terms),
+                 logs_[best][c], values_[best], to.empty() ? range.to : to};
     for (int prior = 0; prior < 2; ++prior)
       evidence[prior].push_back(cell.log_evidence + std::log(ranges_.mass(cell.range, prior == 1)));
     map.cells.push_back(std::move(cell));
@@ -249,8 +262,9 @@ const MapCell& leading_cell(const HypothesisMap& map, const FitRanges& ranges) {
   });
 }
 
-double published_p(const Experiment& experiment, const FitRanges& ranges, const HypothesisMap& map,
+double published_p(const Experiment& experiment, const FitRanges& printed, const HypothesisMap& map,
                    const MapOptions& options, int replicates) {
+  const FitRanges ranges = printed.of(before_print(printed.laws(), map.hypothesis));
   const Computed computed(experiment, ranges, map.hypothesis, options.elements);
   std::vector<std::vector<TouchCurve>> likely;
   for (const std::vector<double>& values : map.likely) likely.push_back(computed.curves(values));

@@ -26,9 +26,14 @@ struct Hypothesis {
   std::string family;
   std::vector<PriorNumber> numbers;
   void (*change)(coupling::PushProblem&) = nullptr;  ///< of the declared test, or null
+  /// The smallest linear coefficient of all series is printed a hundred times too small.
+  bool decimal_point = false;
 };
+/// The published fits as they were before they were printed. laws: one a series.
+[[nodiscard]] std::vector<QuadraticLaw> before_print(std::vector<QuadraticLaw> laws,
+                                                     const Hypothesis& hypothesis);
 /// The declared test; with each effect of the catalogue that published fits can show; with pairs of them; the
-/// rope; pinned ends; the inward push.
+/// rope; pinned ends; the inward push; a slip of the decimal point.
 [[nodiscard]] std::vector<Hypothesis> published_hypotheses();
 
 /// What a hypothesis makes of the published fits at one range and number of readings.
@@ -87,7 +92,7 @@ inline constexpr const char* along_the_wire = "along_the_wire";
 /// far from it as these: by a parametric bootstrap of T = max log p(numbers | hypothesis) - max log p(numbers
 /// | parabolas, a scatter each), both over ranges and numbers of readings, the former also over `likely`
 /// numbers of the test. A multiple of 1 / (replicates + 1).
-[[nodiscard]] double published_p(const Experiment& experiment, const FitRanges& ranges,
+[[nodiscard]] double published_p(const Experiment& experiment, const FitRanges& printed,
                                  const HypothesisMap& map, const MapOptions& options, int replicates);
 
 /// The cell with most posterior mass, common ranges even in their logarithm.

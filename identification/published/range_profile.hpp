@@ -6,7 +6,7 @@ namespace snare::identification {
 
 /// log p of published fits at given ranges and one number of readings by every scatter, common to all series.
 struct ByScatter {
-  Eigen::ArrayXd log_sigma;  ///< evenly spread [log N]
+  Eigen::ArrayXd log_sigma;  ///< whole multiples of scatter_step, ascending [log N]
   Eigen::ArrayXd log;        ///< [-]
   double most = 0.0;         ///< the largest that `log` can be
 };
@@ -19,10 +19,11 @@ struct ByScatter {
 /// What computed curves make of published fits over all ranges, zeros and scatter (even in its logarithm,
 /// Jeffreys) integrated out.
 struct RangeProfile {
-  /// log p, by range and number of readings; of a bin the mean over it, even in the logarithm of the range
+  /// log p, by range and number of readings; of a bin the mean over it, even in the logarithm of the range;
+  /// of own ranges the mean over them.
   std::vector<double> log;
-  /// Of a bin, likewise: the range in it with the largest p [m]; 0 where nothing is possible.
-  std::vector<double> best_to;
+  /// Likewise: the ranges there with the largest p, one a series [m]; empty where nothing is possible.
+  std::vector<std::vector<double>> best_to;
   double largest = impossible;  ///< of p over all ranges and numbers of readings
 };
 

@@ -59,10 +59,14 @@ class Oscillator final : public DaePart {
     add(2, 2, 1.0);
   }
   [[nodiscard]] int event_count() const override { return 1; }
-  void events(const DaePoint& at, std::span<double> values) override { values[0] = at.y[first_]; }
+  void events(const DaePoint& at, std::span<double> values) override {
+    const double x = at.y[first_];
+    values[0] = std::abs(x) < zero_within ? 0.0 : x;
+  }
   bool outgrows_pattern(const DaePoint&) override { return changes_pattern; }
 
   double fails_after = 1e300;
+  double zero_within = 0.0;
   bool throws = false;
   bool changes_pattern = false;
   bool rate_follows = false;
@@ -174,6 +178,23 @@ TEST(Ida, StopsWhereAnEventFunctionIsZero) {
   EXPECT_EQ(result, IdaAdvance::reached_limit);
   EXPECT_NEAR(ida.y()[0], std::abs(std::cos(3.0)), 1e-7);
   EXPECT_EQ(ida.statistics().restarts, 2);
+}
+
+// As the gap of a touch may be, to round-off.
+TEST(Ida, GoesOnWhereAnEventFunctionStaysZero) {
+  Oscillator part(2.0);
+  part.zero_within = 1e-13;
+  DaeSystem system({&part});
+  Ida ida(system, tight());
+  ida.start(0.0, displaced(), displaced_rate);
+  IdaAdvance result = IdaAdvance::stepped;
+  while (result == IdaAdvance::stepped) result = ida.advance(10.0);
+  ASSERT_EQ(result, IdaAdvance::event);
+  do {
+    result = ida.advance(1.5);
+  } while (result == IdaAdvance::stepped);
+  EXPECT_EQ(result, IdaAdvance::reached_limit);
+  EXPECT_NEAR(ida.y()[0], std::cos(3.0), 1e-7);
 }
 
 TEST(Ida, ObserverStopsTheRun) {

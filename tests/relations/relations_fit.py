@@ -12,9 +12,17 @@ def numbers(run, must=True):
     return found
 
 
+def weighed(run):
+    """How the readings of a push were weighed: as replicates, as correlated ones, which some splits of the same readings show and others do not."""
+    noise = run.answer.get("noise") or {}
+    return noise.get("source"), noise.get("correlation_readings") is None
+
+
 def same_fit(one, two, factor=None, errors=1.0, share=0.03, spread=0.03):
     """Each number of the second fit is `factor` times that of the first, its standard error `errors` times as large besides, to `spread` of itself."""
     first, second = numbers(one), numbers(two)
+    if weighed(one) != weighed(two):
+        share, spread = max(share, 1.0), max(spread, 2.0)
     for name, p in first.items():
         f = (factor or {}).get(name, 1.0)
         q = second[name]
@@ -65,10 +73,7 @@ def duplicated(case, run):
     other = case.changed()
     other.main["series"] += [{**s, "name": s["name"] + "b"} for s in case.main["series"]]
     one, two = run(case), run(other)
-    if one.answer["noise"]["source"] != two.answer["noise"]["source"]:  # of replicates, which weigh the readings otherwise
-        same_fit(one, two, errors=math.sqrt(0.5), share=1.0, spread=2.0)
-    else:
-        same_fit(one, two, errors=math.sqrt(0.5))
+    same_fit(one, two, errors=math.sqrt(0.5))
 
 
 def split_series(case, run):
@@ -132,6 +137,15 @@ def the_other_end_first(case, run):
     same_fit(run(case), run(other))
 
 
+def leaves_the_noise(case, run):
+    """The readings are those of a closed form with the declared noise."""
+    one = run(case)
+    numbers(one)
+    chi2 = one.answer["fit"]["chi2_dof"]
+    if not 0.2 < chi2 < 3.0:
+        raise Broken("chi2_dof", f"chi2_dof: {chi2:.4g}")
+
+
 def residual_is_difference(case, run):
     """curves.csv has what fit.json tells."""
     one = run(case)
@@ -151,5 +165,6 @@ RELATIONS = [
     scaled_column,
     forces_times_ten,
     the_other_end_first,
+    leaves_the_noise,
     residual_is_difference,
 ]

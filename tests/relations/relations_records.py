@@ -3,7 +3,7 @@
 import math
 
 from cases import Undecided
-from relations_fit import same_fit
+from relations_fit import leaves_the_noise, same_fit
 
 
 def order_of_records(case, run):
@@ -123,4 +123,5 @@ RELATIONS = [
     another_clock,
     masses_times_four,
     the_other_way,
+    leaves_the_noise,
 ]

@@ -1,6 +1,8 @@
 """What must hold of sweeps: a case is what its verb makes of it alone, whatever stands beside it."""
 
-from cases import Case, Undecided, different
+import itertools
+
+from cases import Broken, Case, Undecided, different
 
 
 def table(run, case):
@@ -69,6 +71,33 @@ def a_case_alone(case, run):
         different("collected", values, [b["position_after_mm"][0], found.answer["energy_J"]["kinetic"]], 0.0)
 
 
+def rows_of_a_grid(case, run):
+    """The last key changes fastest."""
+    found = run(case)
+    for k, row in enumerate(itertools.product(*(v["values"] for v in case.main["vary"]))):
+        different("vary", list(row), [float(found[v["key"]][k]) for v in case.main["vary"]], 0.0, f" in row {k}")
+
+
+def taken_of_all(case, run):
+    """Least, mean and largest of several values ascend; the sum is count times mean."""
+    other = case.changed()
+    field = "bodies[*].position_after_mm[1]"
+    if case.main["verb"] == "push":
+        field = "series[*].largest_force_N"
+        first = other.files["inner__toml"]["series"][0]
+        other.files["inner__toml"]["series"].append({**first, "name": "beside", "contact_position_mm": 0.9 * first["contact_position_mm"]})
+    other.main["collect"] = {word: f"{word} {field}" for word in ("min", "max", "sum", "mean", "count")}
+    found = run(other)
+    for k, status in enumerate(found["status"]):
+        if status != "done":
+            continue
+        least, largest, total, mean, count = (float(found[word][k]) for word in ("min", "max", "sum", "mean", "count"))
+        different("sum", [total], [count * mean], 1e-9 * abs(total))
+        room = 1e-9 * max(abs(least), abs(largest))
+        if not least - room <= mean <= largest + room:
+            raise Broken("mean", f"mean: {mean:.9g} of {least:.9g} to {largest:.9g}, in row {k}")
+
+
 def put(main, key, value):
     words = key.replace("]", "").replace("[", ".").split(".")
     at = main
@@ -83,4 +112,4 @@ def put(main, key, value):
             at = at[word]
 
 
-RELATIONS = [order_of_keys, order_of_values, as_a_file, set_for_all, a_case_alone]
+RELATIONS = [order_of_keys, order_of_values, as_a_file, set_for_all, a_case_alone, rows_of_a_grid, taken_of_all]

@@ -75,7 +75,9 @@ Vector2d curved_moments(const RodModel& model, const DaePoint& at, int vertex) {
                                           model.properties().natural_curvature);
 }
 
-// Newton's method on dE/dk = 0, whose matrix has a band of two vertices and is negative definite.
+// Newton's method on dE/dk = 0, whose matrix has a band of two vertices and is negative definite near the
+// solution: it begins from the turn at each vertex over half of the edges beside it. (From a straight wire a
+// stiff and coarse one would find edges that are short because they are compressed.)
 Matrix2Xd balanced_curvatures(const RodModel& model, const RodInstant& instant, const DaePoint& at) {
   const int n = model.edges();
   const Vector2d stiffness = stiffness_of(model);
@@ -86,6 +88,11 @@ Matrix2Xd balanced_curvatures(const RodModel& model, const RodInstant& instant, 
     if (!BendingCell::exists(model, i)) continue;
     const BendingCell cell(model, instant, at, i);
     angles.col(i) = VertexTurning(cell).angles();
+    double length = 0.0;
+    if (i > 0) length += 0.5 * model.rest_length(i - 1);
+    if (i < n) length += 0.5 * model.rest_length(i);
+    const double flexibility = flexibility_at(model, i);
+    k.col(i) += (angles.col(i).array() / (length + flexibility * stiffness.array())).matrix();
   }
   numerics::SymmetricBandMatrix matrix(2 * (n + 1), 3);
   numerics::BandLdlt factor;

@@ -48,5 +48,23 @@ TEST(RestingWire, IsThatOfItsMounts) {
   }
 }
 
+// Of few edges that turn far, and stiff along themselves: what begins from these places is at rest.
+TEST(RestingWire, OfFewEdgesRests) {
+  wire::WireSpecification steel;
+  steel.diameter = 1.0 * mm;
+  steel.length = 182.0 * mm;
+  steel.youngs_modulus = 200e9;
+  steel.density = 8000.0;
+  for (const int elements : {8, 12, 16}) {
+    wire::RodInMotion rod = wire::rod_in_motion(steel, mounts_apart, elements);
+    rod.formulation = wire::Formulation::higher_order;
+    const wire::RodRest rest = wire::find_rest(rod, resting_wire(rod));
+    ASSERT_TRUE(rest.report.usable()) << rest.report.message;
+    EXPECT_LE(rest.report.iterations, 1) << elements;
+    const double thrust = 4.0 * thrust_between_pins(rod.properties.bending_stiffness, rod.length);
+    EXPECT_NEAR(rest.energies.mount_forces[0].norm(), thrust, 0.03 * thrust) << elements;
+  }
+}
+
 }  // namespace
 }  // namespace snare::coupling

@@ -46,6 +46,43 @@ TEST(PushFriction, LoopClosesAndDissipatesItsArea) {
   EXPECT_TRUE(has(loop, PushEvent::Kind::slip_ends));
 }
 
+// The pusher leaves on the way back, and slides until it does. Points within a step have a work of their own.
+TEST(PushFriction, DissipatesUntilItLeaves) {
+  PushProblem test = declared_wire(40.0 * mm, 6.0 * mm);
+  test.pusher.friction = 0.3;
+  test.travel = test::there_and_back(4.0 * mm, 9);
+  test.wire.strand_friction = wire::StrandFriction{0.02, 2.0, 0.0};
+  const PushCurve few = solve_push(test, mesh(64));
+  test.travel = test::there_and_back(4.0 * mm, 60);
+  const PushCurve many = solve_push(test, mesh(64));
+  ASSERT_TRUE(few.report.usable() && many.report.usable());
+  EXPECT_FALSE(few.points.back().in_contact);
+  EXPECT_NEAR(few.points.back().dissipated, many.points.back().dissipated,
+              1e-3 * many.points.back().dissipated);
+  for (const PushCurve* curve : {&few, &many})
+    for (std::size_t i = 1; i < curve->points.size(); ++i)
+      EXPECT_GE(curve->points[i].dissipated, (1.0 - 3e-4) * curve->points[i - 1].dissipated);
+}
+
+// A round pusher that moves askew drags a wire over its supports and rolls along it.
+TEST(PushFriction, WorkOnSupportsIsEnergy) {
+  for (const double radius : {0.0, 13.0 * mm}) {
+    for (const double askew : {-0.13, 0.13}) {
+      PushProblem test = declared_wire(140.0 * mm, radius);
+      test.mount.kind = wire::MountKind::supports;
+      test.pusher.friction = 0.4;
+      test.pusher.misalignment = askew;
+      test.travel = test::travel_to(2.0 * mm, 60);
+      const PushCurve curve = solve_push(test, mesh(64));
+      ASSERT_TRUE(curve.report.usable()) << curve.report.message;
+      const PushPoint &first = curve.points.front(), &last = curve.points.back();
+      const double gain = last.energy + last.dissipated - first.energy;
+      EXPECT_GT(last.dissipated, 0.02 * gain);
+      EXPECT_NEAR(loop_area(curve), gain, 2e-3 * gain) << radius << ' ' << askew;
+    }
+  }
+}
+
 TEST(PushFriction, ForceStaysInTheCone) {
   for (const double radius : {0.0, 6.0 * mm}) {
     for (const double mu : {0.05, 0.2, 0.6}) {
