@@ -114,7 +114,8 @@ void add_map(const Reproduction& reproduction, json& result) {
   const PublishedVerdict verdict = published_verdict(*reproduction.map);
   result["published"] = {{"answer", to_string(verdict.answer)},
                          {"headline", verdict.headline},
-                         {"coarse", reproduction.map->at("coarse")}};
+                         {"coarse", reproduction.map->at("coarse")},
+                         {"decimal_point", reproduction.map->at("decimal_point")}};
   for (json entry : reproduction.map->at("map")) {
     entry.erase("by_range_and_readings");
     if (entry["model"] == verdict.leading) result["leading"] = entry;

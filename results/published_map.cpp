@@ -105,6 +105,7 @@ std::string percent(double share) {
 /// "something gives along the wire, by 27 micrometres a newton more than declared (24 to 38 with 95 %)"
 std::string meaning_of(const json& map, const Family& family) {
   if (family.members.size() == 1) return family.members.front()["meaning"].get<std::string>();
+  if (family.members.front()["family"] == identification::slips) return "the wire slips at a mount";
   const json& more = map["along_the_wire"]["more_compliance_um_N"];
   return fmt::format(
       "something gives along the wire, by {:.0f} micrometres a newton more than declared ({:.0f} to {:.0f} "
@@ -169,6 +170,17 @@ json compliance_of(const Experiment& experiment, const std::vector<HypothesisMap
     upper = std::max(upper, quantile(weighted, 0.975));
   }
   return {{"more_compliance_um_N", {{"median", median}, {"lower95", lower}, {"upper95", upper}}}};
+}
+
+/// How likely it is that a decimal point slipped in print, and in which series.
+json decimal_point_of(const Experiment& experiment, const std::vector<HypothesisMap>& maps) {
+  const auto least = std::ranges::min_element(
+      experiment.series, {}, [](const identification::Series& s) { return std::abs(s.law->b); });
+  double probability[2] = {0.0, 0.0};
+  for (const HypothesisMap& m : maps)
+    for (int prior = 0; prior < 2; ++prior)
+      probability[prior] += m.hypothesis.decimal_point ? m.probability[prior] : 0.0;
+  return {{"series", least->name}, {"probability", probability}};
 }
 
 /// Where the probability of a family lies: shares of the kinds of ranges, and 95 % of the common ranges and
@@ -249,6 +261,7 @@ json published_map_json(const Experiment& experiment, const FitRanges& ranges,
   for (std::size_t k = 0; k < maps.size(); ++k)
     result["map"].push_back(entry_of(experiment, model, ranges, maps[k], k < p.size() ? p[k] : std::nullopt));
   result["along_the_wire"] = compliance_of(experiment, maps);
+  result["decimal_point"] = decimal_point_of(experiment, maps);
   const Family leading = leading_family(result);
   result["region"] = region_json(ranges, maps, leading.members.front()["family"].get<std::string>());
   return result;
@@ -295,11 +308,16 @@ PublishedVerdict published_verdict(const json& map) {
           fmt::format("The published fits cannot tell; the likeliest explanation is: {}: {}.", meaning, sure);
       break;
   }
+  const double slipped = probability(map["decimal_point"]);
+  const std::string misprint =
+      slipped < 0.5 ? ""
+                    : fmt::format("; in series {}, B is most likely printed a hundred times too small ({})",
+                                  map["decimal_point"]["series"].get<std::string>(), percent(slipped));
   const std::string more = "the range of the test, its largest force or one raw reading would tell more";
   verdict.headline += family.members.size() > 1
-                          ? fmt::format(" They cannot tell which of these it is: {}; {} ({} fit).",
-                                        members_of(family), more, region_of(map))
-                          : fmt::format(" They fit over {}; {}.", region_of(map), more);
+                          ? fmt::format(" They cannot tell which of these it is: {}{}; {} ({} fit).",
+                                        members_of(family), misprint, more, region_of(map))
+                          : fmt::format(" They fit over {}{}; {}.", region_of(map), misprint, more);
   return verdict;
 }
 

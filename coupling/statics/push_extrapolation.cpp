@@ -17,7 +17,8 @@ constexpr int coarsest = 4;  // of the edges of the mesh, one
 
 /// The values that are extrapolated, in addition to the derivatives of the force. All forces on the wire are
 /// among them, and are extrapolated together or not at all: their balance holds after extrapolation as it
-/// does on every mesh. The energy goes with them, the place of the contact by itself.
+/// does on every mesh. The place of the contact is extrapolated by itself, the energy at all points of a curve
+/// or at none, since only its differences mean something.
 constexpr std::array extrapolated_values{&PushPoint::force,
                                          &PushPoint::transverse_force,
                                          &PushPoint::axial_force,
@@ -31,7 +32,7 @@ constexpr std::array extrapolated_values{&PushPoint::force,
                                          &PushPoint::reaction_z_right,
                                          &PushPoint::energy,
                                          &PushPoint::contact_coordinate};
-constexpr std::size_t extrapolated_forces = extrapolated_values.size() - 2;
+constexpr std::size_t extrapolated_forces = extrapolated_values.size() - 2, energy = extrapolated_forces;
 
 /// What a coarser mesh contributes to a point. A curve of a million of them is large: the rest goes.
 struct CoarsePoint {
@@ -119,17 +120,26 @@ double extrapolate(PushPoint& p, const CoarsePoint& half, const CoarsePoint& qua
   for (std::size_t v = 0; v < values.size(); ++v)
     values[v] = {p.*extrapolated_values[v], half.values[v], quarter.values[v]};
   const Refinement& arc = values.back();
+  static_assert(extrapolated_values[energy] == &PushPoint::energy);
   static_assert(extrapolated_values.back() == &PushPoint::contact_coordinate);
   if (arc.in_order()) p.contact_coordinate = arc.extrapolated();
   const Refinement& force = values.front();
   static_assert(extrapolated_values.front() == &PushPoint::force);
   if (!are_of_one_branch(values)) return force.largest_change();
-  for (std::size_t v = 0; v <= extrapolated_forces; ++v)
-    p.*extrapolated_values[v] = values[v].extrapolated();  // forces and energy
+  for (std::size_t v = 0; v < extrapolated_forces; ++v) p.*extrapolated_values[v] = values[v].extrapolated();
   for (std::size_t v = 0; v < p.force_by.size(); ++v)
     p.force_by[v] = Refinement{p.force_by[v], half.force_by[v], quarter.force_by[v]}.extrapolated();
   const double third_order = (32.0 * force.fine - 12.0 * force.half + force.quarter) / 21.0;
   return force.in_order() ? 2.0 * std::abs(p.force - third_order) : force.largest_change();
+}
+
+/// values: one a point, fewer where points have no partners on the coarser meshes.
+void extrapolate_energies(const std::vector<Refinement>& values, std::vector<PushPoint>& points) {
+  constexpr double much = 0.1;
+  const bool all = values.size() == points.size() && std::ranges::all_of(values, [](const Refinement& r) {
+                     return r.in_order() || r.largest_change() <= much * std::abs(r.fine);
+                   });
+  for (std::size_t i = 0; all && i < points.size(); ++i) points[i].energy = values[i].extrapolated();
 }
 
 /// Of a coarse mesh only the curve is wanted, in the steps of the finest.
@@ -230,6 +240,7 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
   // Points are paired in the order in which they were reached; arcs through folds have travels of their own.
   std::size_t in_half = 0;
   std::size_t in_quarter = 0;
+  std::vector<Refinement> energies;
   for (std::size_t i = 0; i < result.curve.points.size(); ++i) {
     PushPoint& p = result.curve.points[i];
     const CoarsePoint* h = next(half.points, in_half, p.travel);
@@ -239,12 +250,14 @@ ExtrapolatedCurve solve_push_extrapolated(const PushProblem& test, const PushOpt
     if (q) p.iterations += q->iterations;
     if (h && q && h->same_state(p) && q->same_state(p)) {
       error = extrapolate(p, *h, *q);
+      energies.push_back({p.energy, h->values[energy], q->values[energy]});
     } else {  // in other states of contact, or a mesh has not come here: they differ by what they err
       for (const CoarsePoint* other : {h, q})
         if (other) error = std::max(error, std::abs(p.force - other->values.front()));
       if (!h && !q) error = std::numeric_limits<double>::quiet_NaN();
     }
   }
+  extrapolate_energies(energies, result.curve.points);
   if (!result.curve.steps.empty()) {
     const CoarseCurve longer = with_longer_steps(test, on_coarse);
     result.curve.newton_iterations += longer.newton_iterations;

@@ -101,7 +101,7 @@ Density density(double t, double k, double m, double sigma, double log_gamma) {
   d.log = (k - 1.0) * std::log(t) - (0.5 * k - 1.0) * std::numbers::ln2 - 0.5 * (t - m) * (t - m) + b.scaled;
   d.q = (t * t * rho - 1.0) / (2.0 * variance);
   d.s = (t - m) * (t - m) + 2.0 * z * (1.0 - z * rho) - k;
-  d.qq = std::pow(t, 4) * kappa / (4.0 * variance * variance);
+  d.qq = t * t * t * t * kappa / (4.0 * variance * variance);
   d.qs = (1.0 - 2.0 * t * t * rho - t * t * z2 * kappa) / variance;
   d.ss = -2.0 * (t * t + m * m) + 8.0 * z2 * rho + 4.0 * z2 * z2 * kappa;
   d.along = (k - 1.0) / t - t + m * z * rho;

@@ -26,9 +26,11 @@ struct Hypothesis {
   std::string family;
   std::vector<PriorNumber> numbers;
   void (*change)(coupling::PushProblem&) = nullptr;  ///< of the declared test, or null
-  /// The smallest linear coefficient of all series is printed a hundred times too small.
+  /// The smallest linear coefficient of all series is printed a hundred times too small: prior_of_a_slip.
   bool decimal_point = false;
 };
+/// Prior probability [-], over that of any other hypothesis, that a decimal point slipped in print.
+inline constexpr double prior_of_a_slip = 0.02;
 /// The published fits as they were before they were printed. laws: one a series.
 [[nodiscard]] std::vector<QuadraticLaw> before_print(std::vector<QuadraticLaw> laws,
                                                      const Hypothesis& hypothesis);
@@ -84,6 +86,8 @@ struct MapOptions {
 
 /// Something gives along the wire: the family of the wire's own stretch and of its mounts.
 inline constexpr const char* along_the_wire = "along_the_wire";
+/// The wire slips in a mount, or a mount slides: the family of either mount and both.
+inline constexpr const char* slips = "slips";
 /// By how much more than declared, wire and mounts together [m/N]; 0 where the hypothesis has neither.
 [[nodiscard]] double more_compliance(const Experiment& experiment, const Hypothesis& hypothesis,
                                      const std::vector<double>& values);

@@ -24,6 +24,7 @@ PublishedVerdict verdict_of(const std::vector<json>& entries) {
       {{"map", entries},
        {"along_the_wire",
         {{"more_compliance_um_N", {{"median", 27.2}, {"lower95", 24.2}, {"upper95", 29.6}}}}},
+       {"decimal_point", {{"series", "s40"}, {"probability", {0.1, 0.2}}}},
        {"region", {{"range_mm", {5.21, 16.4}}, {"readings", {6, 45}}}}});
 }
 

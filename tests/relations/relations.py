@@ -89,10 +89,6 @@ KNOWN = [
         tilted,
         "a tilted pusher follows a loose wire into a shape that is unstable out of the plane, and says 0 unstable modes",
     ),
-    ("work_is_energy",),
-        rubs,
-        "energies have no stated error; on coarse meshes those of neighbouring points are extrapolated or not, and with friction the sum errs by up to 1 %",
-    ),
     (
         "push",
         ("dissipation_never_falls",),

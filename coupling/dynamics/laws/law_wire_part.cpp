@@ -350,6 +350,7 @@ LawWirePart::Action<S> LawWirePart::push(const std::array<FrameMotion<S>, 3>& fr
   constexpr double flat = 1e-3;  // of the span: two straight pieces that say nothing of a tension
   if (h > flat * span) a.tension = a.normal / S(h / std::hypot(s, h) + h / std::hypot(span - s, h));
   a.slide = v - force * (force.dot(v) / force.squaredNorm());
+  add_friction(a.wrenches, frames, a.point, smooth_friction(wire_.friction, a.slide, a.normal), a.share);
   return a;
 }
 
@@ -402,10 +403,8 @@ UnilateralForcePart::Pressing LawWirePart::pressing(const VectorView& y) const {
   const auto by_friction = [&](const Vector3d& slide, double normal) {
     return -smooth_friction(wire_.friction, slide, normal).dot(slide);
   };
-  p.work.power = {a.energy, a.lost};
-  if (wire_.kind == LawWire::Kind::push) return p;
-  p.work.power.lost += by_friction(a.slide, a.normal);
-  if (wire_.kind == LawWire::Kind::rod) return p;
+  p.work.power = {a.energy, a.lost + by_friction(a.slide, a.normal)};
+  if (wire_.kind != LawWire::Kind::stretched) return p;
   p.work.power.lost += (a.tension - a.stiffness * std::max(0.0, a.depth)) * a.rate;
   for (const Stop<double>& s : a.stops) {
     p.work.power.energy += s.energy;

@@ -316,9 +316,9 @@ TEST(LawWire, RodIsMetByItsAngle) {
   EXPECT_TRUE(part.wrenches(y).empty());
 }
 
-// Two wires on a free ring that a shaft, askew, pushes into corners of an energy that depends on its place in
-// the plane: nothing is lost.
-TEST(LawWire, PushesKeepEnergyAndMomentum) {
+/// Two wires on a free ring that a shaft, askew, pushes into corners of an energy that depends on its place in
+/// the plane.
+Motion askew_in_a_ring() {
   Motion motion;
   motion.bodies = {block("visitor", 2.0, {0.02, 0.03, 0.01}), block("ring", 5.0, {0.04, 0.05, 0.06})};
   motion.bodies[0].start.velocity = {0.03, 0.2, 0.05};
@@ -346,6 +346,11 @@ TEST(LawWire, PushesKeepEnergyAndMomentum) {
     };
     motion.law_wires.push_back(w);
   }
+  return motion;
+}
+
+TEST(LawWire, PushesKeepEnergyAndMomentum) {
+  const Motion motion = askew_in_a_ring();
   const MotionResult r = simulate(motion, fine(3.0, 1e-2), {});
   ASSERT_TRUE(r.report.usable()) << r.report.message;
   EXPECT_GE(r.events.size(), 2u);
@@ -353,6 +358,23 @@ TEST(LawWire, PushesKeepEnergyAndMomentum) {
   const double energy = r.energy.kinetic + r.energy.strain;
   EXPECT_NEAR(r.energy.dissipated, 0.0, 1e-12);
   EXPECT_NEAR(r.energy.integrator / energy, 0.0, 2e-6);
+  EXPECT_LT(r.momentum_error.norm(), 1e-8);
+  EXPECT_LT(r.angular_momentum_error.norm(), 1e-8);
+}
+
+TEST(LawWire, FrictionOfAPushIsLost) {
+  Motion motion = askew_in_a_ring();
+  for (LawWire& w : motion.law_wires) {
+    w.friction.law = ContactFriction::smooth;
+    w.friction.static_coefficient = 0.4;
+    w.friction.dynamic_coefficient = 0.3;
+    w.friction.static_speed = 0.01;
+  }
+  const MotionResult r = simulate(motion, fine(3.0, 1e-2), {});
+  ASSERT_TRUE(r.report.usable()) << r.report.message;
+  const double energy = r.energy.kinetic + r.energy.strain;
+  EXPECT_GT(r.energy.dissipated, 1e-3 * energy);
+  EXPECT_NEAR(r.energy.integrator / energy, 0.0, 1e-4);
   EXPECT_LT(r.momentum_error.norm(), 1e-8);
   EXPECT_LT(r.angular_momentum_error.norm(), 1e-8);
 }

@@ -5,11 +5,14 @@
 #include "identification/effects/catalogue.hpp"
 #include "identification/published/curve_likelihood.hpp"
 #include "identification/published/importance_sampling.hpp"
+#include "identification/published/range_profile.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 
 namespace snare::identification {
@@ -139,6 +142,77 @@ TEST(CurveLikelihood, IsADensityOfThePrintedNumbers) {
   const double mean = sum / sets, error = std::sqrt((squares / sets - mean * mean) / sets);
   EXPECT_LT(error, 0.06);
   EXPECT_NEAR(mean, 1.0, 3.0 * error);
+}
+
+QuadraticLaw law_of(const TouchCurve& curve, double to, int readings, double sigma, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0.0, sigma);
+  std::vector<double> travel;
+  VectorXd force(readings);
+  for (int i = 0; i < readings; ++i) {
+    travel.push_back(to * i / (readings - 1));
+    force[i] = curve.force.value(travel.back()) + noise(random);
+  }
+  return printed_law(travel, force, 4);
+}
+
+// Own ranges: a fine sum over the range of each series, of all scatters, is what the profile has.
+TEST(RangeProfile, OwnRangesAreAMeanOverEach) {
+  Experiment e = read_experiment(SNARE_SOURCE_DIR "/data/experiments/published_static.toml", parameters());
+  e.series.pop_back();
+  const std::vector<TouchCurve> curves{cubic(2000.0, 4e7), cubic(3000.0, 3e7)};
+  const double to[] = {5e-3, 9e-3};
+  constexpr double sigma = 0.1;
+  for (std::size_t k = 0; k < 2; ++k)
+    e.series[k].law = law_of(curves[k], to[k], 13, sigma, static_cast<unsigned>(k + 1));
+  FitRanges::Options options;
+  options.bins = 6;
+  options.readings = {13};
+  const FitRanges ranges(e.series, {0.0, 0.0}, options);
+  const RangeProfile profile = range_profile(ranges, curves, impossible);
+
+  constexpr int count = 1500;
+  std::vector<std::map<long, std::vector<double>>> terms[2] = {{{}, {}}, {{}, {}}};  // by prior, then series
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (int i = 0; i < count; ++i) {
+      const double u = (i + 0.5) / count;
+      const double at[] = {options.least * std::pow(options.most / options.least, u),
+                           options.least + (options.most - options.least) * u};
+      for (std::size_t prior = 0; prior < 2; ++prior) {
+        std::vector<std::optional<double>> zero(1);
+        const ByScatter all =
+            by_scatter(ranges.single()[k].at({at[prior]}), 0, {curves[k]}, zero, impossible);
+        for (Eigen::Index s = 0; s < all.log.size(); ++s)
+          terms[prior][k][std::lround(all.log_sigma[s] / scatter_step)].push_back(all.log[s]);
+      }
+    }
+  }
+  for (std::size_t prior = 0; prior < 2; ++prior) {
+    std::vector<double> sums;
+    for (const auto& [scatter, some] : terms[prior][0])
+      if (const auto other = terms[prior][1].find(scatter); other != terms[prior][1].end())
+        sums.push_back(log_sum(some) + log_sum(other->second) - 2.0 * std::log(count));
+    EXPECT_NEAR(profile.log[ranges.bins() + prior], log_sum(sums) + std::log(scatter_step), 0.15) << prior;
+  }
+  // Common ranges cannot be both.
+  for (std::size_t r = 0; r < ranges.bins(); ++r) EXPECT_LT(profile.log[r], profile.log[ranges.bins()] - 3.0);
+  const std::vector<double>& best = profile.best_to[ranges.bins()];
+  ASSERT_EQ(best.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(best[k], to[k], 0.1 * to[k]);
+}
+
+// A coefficient that is printed a hundred times too small is found out, and weighed by its prior.
+TEST(PublishedMap, FindsADecimalPointThatSlipped) {
+  const Experiment e =
+      read_experiment(SNARE_SOURCE_DIR "/data/experiments/published_static.toml", parameters());
+  std::vector<QuadraticLaw> laws;
+  for (const Series& s : e.series) laws.push_back(*s.law);
+  Hypothesis slipped{"slipped", "", "slipped", {}, nullptr, true};
+  const std::vector<QuadraticLaw> before = before_print(laws, slipped);
+  EXPECT_DOUBLE_EQ(before[0].b, 100.0 * laws[0].b);
+  for (std::size_t k = 1; k < laws.size(); ++k) EXPECT_EQ(before[k].b, laws[k].b);
+  slipped.decimal_point = false;
+  EXPECT_EQ(before_print(laws, slipped)[0].b, laws[0].b);
 }
 
 // A wire that gives at its mounts makes the numbers; the map names it, and no other single effect.
