@@ -16,8 +16,9 @@ struct NextExperiment {
 };
 
 /// The push test, of a list of variations of the present ones (position, slack, load and unload, direction,
-/// speed), in which two models that explain the present data differ most; beside it the measurement that
-/// settles an effect by itself. What loads the wire more than the present tests do says so.
+/// speed), in which two models that explain the present data differ most, of those that load the wire little if
+/// one of them tells; beside it the measurement that settles an effect by itself, which comes first where the
+/// push may break the wire.
 /// names: of the two effects. sigma: of a reading [N].
 [[nodiscard]] NextExperiment next_experiment(const Model& model, const std::vector<Setting>& one,
                                              const std::vector<Setting>& other,
