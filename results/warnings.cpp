@@ -46,6 +46,25 @@ std::vector<std::string> lost_contact(const std::vector<PushPoint>& points) {
                       1e3 * last->travel)};
 }
 
+/// Warns of supports that would have to pull a wire which its weight lifts off them.
+std::vector<std::string> pulling_supports(const coupling::PushProblem& test,
+                                          const std::vector<PushPoint>& points) {
+  if (test.mount.kind != wire::MountKind::supports) return {};
+  const double towards = test.pusher.direction == coupling::PushDirection::outward ? 1.0 : -1.0;
+  double last = -1.0, largest = 0.0;
+  for (const PushPoint& p : points) {
+    const double pull = towards > 0.0 ? std::max(p.reaction_across_left, p.reaction_across_right)
+                                      : -std::min(p.reaction_across_left, p.reaction_across_right);
+    if (pull > 1e-6 * std::abs(p.force) + 1e-9) last = p.travel, largest = std::max(largest, pull);
+  }
+  if (last < 0.0) return {};
+  return {
+      fmt::format("the supports would have to pull by up to {:.3g} N, up to a travel of {:.4g} mm: the "
+                  "weight lifts the wire off "
+                  "them, which is not computed; push the other way, or turn gravity",
+                  largest, 1e3 * last)};
+}
+
 /// Warns of points on a branch that a wire which is free to move leaves, from the bifurcation on where there
 /// is one.
 std::vector<std::string> unstable_branch(const coupling::PushCurve& curve) {
@@ -97,6 +116,7 @@ std::vector<std::string> push_warnings(const std::vector<identification::Series>
     const std::string whose = (of.empty() ? "" : of + ", ") + "series " + series[k].name;
     sentences.add(whose, lost_contact(points));
     sentences.add(whose, unstable_branch(predictions[k].curve.curve));
+    sentences.add(whose, pulling_supports(series[k].test, points));
   }
   return sentences.take();
 }

@@ -29,7 +29,7 @@ SlidingContact make_pusher(const PushProblem& test, int node) {
   return pusher;
 }
 
-// Wire resting on two supports, the pusher touching it from the other side; straight, without force.
+// Wire resting on two supports, the pusher touching it from the other side; straight, without force or weight.
 void rest_on_supports(PushSetup& setup, const wire::Controls& controls) {
   PushSystem& system = *setup.system;
   const wire::MaterialMesh& mesh = setup.rod->mesh();
@@ -101,20 +101,6 @@ wire::MaterialMesh push_mesh(const PushProblem& test, int edges, double grading,
   return coarsening > 1 ? mesh.coarsened(coarsening) : mesh;
 }
 
-void prepare_on_supports(const PushProblem& test, const wire::MaterialMesh& mesh, PushSetup& setup) {
-  if (test.wire.natural_curvature != 0.0) {
-    // It would touch the supports in a shape and a roll of its own.
-    setup.report.end(numerics::Termination::step_too_small,
-                     "a naturally curved wire on supports is not computed");
-    return;
-  }
-  const wire::Controls controls = initial_controls(test);
-  setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
-  setup.system->sliding = make_contacts(test, mesh, controls);
-  setup.system->compliance = test.pusher.compliance;
-  rest_on_supports(setup, controls);
-}
-
 /// The loose wire between mounts that hold. In an unstable shape the contact vertex is moved to where the
 /// pusher comes, so that Newton's method does not wander off to another shape: `controls` say where it is.
 wire::LooseWire loose_wire(const PushProblem& test, const wire::MaterialMesh& mesh, wire::Controls& controls,
@@ -138,24 +124,10 @@ wire::LooseWire loose_wire(const PushProblem& test, const wire::MaterialMesh& me
   return loose;
 }
 
-/// Brings the pusher to the loose wire without a force.
-void touch(const PushProblem& test, const wire::LooseWire& loose, const wire::Controls& controls,
-           const wire::MaterialMesh& mesh, PushSetup& setup) {
-  setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
-  PushSystem& system = *setup.system;
-  system.sliding = make_contacts(test, mesh, controls);
+/// Solves with the pusher at the wire and no force between them, and puts it where it touches.
+void find_touch(PushSystem& system, const wire::MaterialMesh& mesh, PushSetup& setup) {
   SlidingContact& pusher = system.sliding.front();
-  pusher.centre.y() = wire::vertex(loose.state, mesh.contact_vertex()).y() - pusher.side * pusher.radius;
   pusher.status = ContactStatus::touching;
-  system.compliance = test.pusher.compliance;
-  system.mounts = slipping_mounts(test.mount, test.pusher.friction, controls);
-
-  setup.start.band = loose.state.q;
-  setup.start.border.setZero(system.border_unknowns());
-  setup.start.border[system.pusher_rows().coordinate] = controls[1];
-  for (std::size_t k = 0; k < system.mounts.size(); ++k) {
-    if (system.mounts[k].feeds()) setup.start.border[system.mount_row(k)] = system.mounts[k].last;
-  }
   numerics::PathWorkspace workspace;
   const numerics::SolveReport touched = numerics::correct(system, setup.start, workspace, 50);
   setup.iterations += touched.iterations;
@@ -168,6 +140,42 @@ void touch(const PushProblem& test, const wire::LooseWire& loose, const wire::Co
   pusher.centre += gap * pusher.approach();
   gap = 0.0;
   setup.natural_height = wire::vertex(system.state(setup.start), mesh.contact_vertex()).y();
+}
+
+void prepare_on_supports(const PushProblem& test, const wire::MaterialMesh& mesh, PushSetup& setup) {
+  if (test.wire.natural_curvature != 0.0) {
+    // It would touch the supports in a shape and a roll of its own.
+    setup.report.end(numerics::Termination::step_too_small,
+                     "a naturally curved wire on supports is not computed");
+    return;
+  }
+  const wire::Controls controls = initial_controls(test);
+  setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
+  setup.system->sliding = make_contacts(test, mesh, controls);
+  setup.system->compliance = test.pusher.compliance;
+  rest_on_supports(setup, controls);
+  // From the straight wire to the one that sags under its weight.
+  if (setup.rod->properties().weight != Vector2d::Zero()) find_touch(*setup.system, mesh, setup);
+}
+
+/// Brings the pusher to the loose wire without a force.
+void touch(const PushProblem& test, const wire::LooseWire& loose, const wire::Controls& controls,
+           const wire::MaterialMesh& mesh, PushSetup& setup) {
+  setup.system = std::make_unique<PushSystem>(*setup.rod, controls);
+  PushSystem& system = *setup.system;
+  system.sliding = make_contacts(test, mesh, controls);
+  SlidingContact& pusher = system.sliding.front();
+  pusher.centre.y() = wire::vertex(loose.state, mesh.contact_vertex()).y() - pusher.side * pusher.radius;
+  system.compliance = test.pusher.compliance;
+  system.mounts = slipping_mounts(test.mount, test.pusher.friction, controls);
+
+  setup.start.band = loose.state.q;
+  setup.start.border.setZero(system.border_unknowns());
+  setup.start.border[system.pusher_rows().coordinate] = controls[1];
+  for (std::size_t k = 0; k < system.mounts.size(); ++k) {
+    if (system.mounts[k].feeds()) setup.start.border[system.mount_row(k)] = system.mounts[k].last;
+  }
+  find_touch(system, mesh, setup);
 }
 
 }  // namespace

@@ -46,6 +46,16 @@ TEST_F(Warnings, APushOfWhatCannotBe) {
       "series s: the curve runs along an unstable branch from a travel of ");
 }
 
+TEST_F(Warnings, SupportsThatPull) {
+  write("x.toml", experiment(""));
+  const std::string supports =
+      "--set mount.kind='\"supports\"' --set mount.support_radius_mm=0 --set wire.length_mm=200 ";
+  expect_said(supports + "--set gravity.vector_m_s2=[0,-9.81,0]",
+              "series s: the supports would have to pull by ");
+  ASSERT_EQ(run("push x.toml --out here " + supports + "--set gravity.vector_m_s2=[0,9.81,0]"), 0);
+  EXPECT_EQ(contents("err.txt").find("supports"), std::string::npos) << contents("err.txt");
+}
+
 // One sentence for all series, of the one with the largest stress.
 TEST_F(Warnings, AStressInSeveralSeries) {
   write(

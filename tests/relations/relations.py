@@ -33,9 +33,10 @@ from shrink import shrink
 SUBJECTS = {"push": 5, "motion": 5, "bodies": 3, "arms": 2, "snares": 1, "fit": 2, "records": 1, "sweeps": 1}
 
 
-def on_supports_with_weight(case):
+def lifted_off_supports(case):
     m = case.main
-    return m["mount"]["kind"] == "supports" and "gravity" in m
+    towards = 1.0 if m["pusher"]["direction"] == "outward" else -1.0
+    return m["mount"]["kind"] == "supports" and "gravity" in m and towards * m["gravity"]["vector_m_s2"][1] < 0.0
 
 
 def between_samples(case):
@@ -76,7 +77,7 @@ def tilted(case):
 
 # Subject, relations (none: all of them), of which files, and why it is not mended.
 KNOWN = [
-    ("push", (), on_supports_with_weight, "the push begins from the shape without weight, and supports pull"),
+    ("push", (), lifted_off_supports, "supports pull a wire that its weight lifts off them, of which a warning tells"),
     (
         "push",
         ("forces_balance",),

@@ -244,5 +244,33 @@ TEST(PushAccuracy, SupportsSlideOnTheWayBack) {
         << "after " << i << " steps";
 }
 
+// The travel counts from the wire that sags: to first order the weight adds nothing to the force, 48 EI d/L^3,
+// and half of itself to each support.
+TEST(PushAccuracy, WeightOnSupportsAddsNoForce) {
+  PushProblem test = declared_wire(125.0 * mm, 0.0);
+  test.wire.length = 300.0 * mm;
+  test.wire.diameter = 2.0 * mm;
+  test.mount.kind = wire::MountKind::supports;
+  test.mount.span = 250.0 * mm;
+  test.mount.support_radius = 0.0;
+  test.travel = test::travel_to(0.5 * mm, 4);
+  const double stiffness = 48.0 * test.wire.bending_stiffness() / std::pow(test.mount.span, 3);
+  const double weight = test.wire.mass_per_length() * 9.81 * test.mount.span;
+  for (const double friction : {0.0, 0.2}) {
+    test.pusher.friction = friction;
+    for (const double gravity : {0.0, 9.81}) {
+      test.gravity = {0.0, gravity, 0.0};  // onto the supports, which hold against the push
+      const PushCurve curve = solve_push(test, mesh(64));
+      ASSERT_TRUE(curve.report.usable()) << curve.report.message;
+      for (const PushPoint& p : curve.points) {
+        EXPECT_NEAR(p.force, stiffness * p.travel, 2e-3 * stiffness * test.travel.back())
+            << friction << ' ' << gravity;
+        EXPECT_NEAR(-p.reaction_across_left, 0.5 * p.force + (gravity > 0.0 ? 0.5 * weight : 0.0),
+                    2e-3 * weight);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace snare::coupling
