@@ -111,6 +111,8 @@ numerics::SolveReport PlanarPush::lift_off(const ContactStates& before) {
   accept(before);
   assembled_at_.reset();
   if (!is_stable_without_pusher()) return snap_free_wire();
+  accept(system_.contact_states());  // in equilibrium without the pusher's force
+  assembled_at_.reset();
   unstable_ = 0;
   return {};
 }

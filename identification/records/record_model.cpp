@@ -31,6 +31,22 @@ const WireMotions& run_of(const scenario::Scenario& s, const RecordSet& set) {
 
 /// Long enough for the first readings of a record, whatever the scenario's own duration. A filter that runs
 /// both ways wants all of them.
+/// Whether every reading of a record comes with a sample of the computed motion.
+bool is_sampled(const Record& record, double interval) {
+  constexpr double round_off = 1e-6;  // of the interval
+  return !(record.filter.cutoff > 0.0) && std::ranges::all_of(record.times, [&](double time) {
+    return std::abs(time / interval - std::round(time / interval)) < round_off;
+  });
+}
+
+/// Sensors with a reading at every sample, where there are so many more samples; others as they are.
+std::vector<scenario::Sensor> sampled_more_often(std::vector<scenario::Sensor> sensors, double interval,
+                                                 int parts) {
+  for (scenario::Sensor& s : sensors)
+    if (s.interval == interval) s.interval /= parts;
+  return sensors;
+}
+
 double duration_for(const Record& record, Eigen::Index readings, double interval) {
   const Eigen::Index last = (record.filter.cutoff > 0.0 ? record.times.size() : readings) - 1;
   return (std::ceil(record.times[last] / interval) + 1.0) * interval;
@@ -207,6 +223,9 @@ std::shared_ptr<const SensorRun> RecordModel::run(const std::vector<base::Overri
   const WireMotions& motions = run_of(read, set_);
   const scenario::NamedMotion& named = motions.runs.front();
   coupling::MotionOptions options = named.options;
+  // A cubic between samples errs by the fourth power of their distance.
+  const int parts = is_sampled(set_.records[record], options.output_interval) ? 1 : 4;
+  options.output_interval /= parts;
   const long most = most_steps_;
   long steps = 0;
   options.stop = [&] { return ++steps > most || stopped(); };
@@ -227,7 +246,8 @@ std::shared_ptr<const SensorRun> RecordModel::run(const std::vector<base::Overri
     return nullptr;
   }
   took(steps);
-  auto run = std::make_shared<const SensorRun>(read_sensors_of(motions.sensors, named.motion, samples));
+  auto run = std::make_shared<const SensorRun>(read_sensors_of(
+      sampled_more_often(motions.sensors, named.options.output_interval, parts), named.motion, samples));
   constexpr std::size_t most_kept = 12;
   const std::scoped_lock lock(kept_guard_);
   kept_.emplace_back(key, run);

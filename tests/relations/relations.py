@@ -39,17 +39,8 @@ def lifted_off_supports(case):
     return m["mount"]["kind"] == "supports" and "gravity" in m and towards * m["gravity"]["vector_m_s2"][1] < 0.0
 
 
-def between_samples(case):
-    return any("0.013," in text for name, text in case.files.items() if name.endswith("csv"))
-
-
 def with_a_zero(case):
     return "reading.displacement_offset_mm" in case.main["fit"]["free"]
-
-
-def slips_inward(case):
-    m = case.main
-    return m["pusher"]["direction"] == "inward" and "slip_tension_N" in m["mount"]
 
 
 def slips_at_a_mount(case):
@@ -80,12 +71,6 @@ KNOWN = [
     ("push", (), lifted_off_supports, "supports pull a wire that its weight lifts off them, of which a warning tells"),
     (
         "push",
-        ("forces_balance",),
-        slips_inward,
-        "where a mount slips under the compression of the wire at rest it draws away from the pusher: the first line has no force and reactions of one",
-    ),
-    (
-        "push",
         ("weak_natural_curvature_1_m",),
         tilted,
         "a tilted pusher follows a loose wire into a shape that is unstable out of the plane, and says 0 unstable modes",
@@ -113,12 +98,6 @@ KNOWN = [
         ("start_values",),
         with_a_zero,
         "a fit that ends where a reading is just before the touch has the standard error of one side of that kink",
-    ),
-    (
-        "records",
-        ("twice_the_output_rate",),
-        between_samples,
-        "a sensor's reading between two samples of the computed motion is that of a cubic, which errs by up to 0.3 % of a fitted number",
     ),
 ]
 
