@@ -43,10 +43,6 @@ def with_a_zero(case):
     return "reading.displacement_offset_mm" in case.main["fit"]["free"]
 
 
-def slips_at_a_mount(case):
-    return "slip_tension_N" in case.main["mount"]
-
-
 def curved_across_weight(case):
     m = case.main
     return "gravity" in m and "natural_curvature_1_m" in m["wire"]
@@ -74,12 +70,6 @@ KNOWN = [
         ("weak_natural_curvature_1_m",),
         tilted,
         "a tilted pusher follows a loose wire into a shape that is unstable out of the plane, and says 0 unstable modes",
-    ),
-    (
-        "push",
-        ("dissipation_never_falls",),
-        slips_at_a_mount,
-        "a mount that slips on and back within one step counts what is left of both ways: up to 0.5 % of the dissipated energy",
     ),
     (
         "push",
