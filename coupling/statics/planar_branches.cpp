@@ -168,6 +168,16 @@ numerics::SolveReport PlanarPush::snap_free_wire() {
 // Natural steps have failed: a fold. Follows the path by its length (N.5) until it passes the target in its
 // own direction of travel, recording the points on the way.
 numerics::SolveReport PlanarPush::follow_arc(double target) {
+  // An arc that ends where natural steps fail again begins the next one.
+  constexpr int most_arcs = 64;
+  struct Under {
+    explicit Under(int& count) : count(++count) {}
+    Under(const Under&) = delete;
+    ~Under() { --count; }
+    int& count;
+  };
+  const Under arc(arcs_);
+  if (arcs_ > most_arcs) return ended(numerics::Termination::step_too_small, "the path cannot be followed");
   const double sense = target > point_.parameter ? 1.0 : -1.0;
   const std::optional<numerics::PathTangent> begin = numerics::tangent(system_, point_, workspace_, nullptr);
   if (!begin) return ended(numerics::Termination::singular_matrix, "the tangent matrix is singular");

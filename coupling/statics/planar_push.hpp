@@ -69,6 +69,7 @@ class PlanarPush final : public PushPath {
   // Parameter of the accepted point that the system was assembled at last
   std::optional<double> assembled_at_;
   int unstable_ = 0;
+  int arcs_ = 0;  // that are under way, one within the other
   double dissipated_ = 0.0;
 };
 
