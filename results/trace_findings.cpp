@@ -192,13 +192,17 @@ std::string serial_words(const identification::SerialNoise& s, std::size_t readi
 }
 
 std::string not_explained(const Trace& t) {
+  using Kind = identification::FindingKind;
   std::string text;
-  const auto odd = std::ranges::find_if(t.findings, [](const identification::Finding& f) {
-    return f.kind == identification::FindingKind::series_of_another_specimen;
-  });
-  if (odd != t.findings.end()) {
+  const auto first = [&](auto... kinds) {
+    return std::ranges::find_if(t.findings,
+                                [&](const identification::Finding& f) { return ((f.kind == kinds) || ...); });
+  };
+  if (const auto odd = first(Kind::series_of_another_specimen); odd != t.findings.end())
     return fmt::format("Not explained by one wire: {}. Leave it out, or trace it by itself.", odd->what);
-  }
+  if (const auto odd = first(Kind::series_exchanged, Kind::sign_turned, Kind::unit_slip);
+      odd != t.findings.end())
+    return fmt::format("Not explained as the readings stand: {}.", odd->what);
   if (t.rival_explanation) {
     text = fmt::format(
         "Not explained: {} would bring the error of {:.3g} N down to the noise, but a single cause that the "

@@ -10,8 +10,8 @@ namespace snare::identification {
 
 std::string to_string(FindingKind kind) {
   static constexpr const char* names[] = {
-      "impossible_stiffness",       "unit_slip",       "sign_turned", "on_bound",
-      "series_of_another_specimen", "not_identifiable"};
+      "impossible_stiffness",       "unit_slip",        "sign_turned",     "on_bound",
+      "series_of_another_specimen", "series_exchanged", "not_identifiable"};
   return names[static_cast<std::size_t>(kind)];
 }
 

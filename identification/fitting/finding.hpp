@@ -14,6 +14,7 @@ enum class FindingKind {
   sign_turned,                 ///< readings have the other sign
   on_bound,                    ///< a fitted number stands on its bound
   series_of_another_specimen,  ///< one series is of another wire than the others
+  series_exchanged,            ///< two series are each at the place of the other
   not_identifiable             ///< the readings do not determine a fitted number
 };
 [[nodiscard]] std::string to_string(FindingKind kind);

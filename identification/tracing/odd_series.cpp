@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace snare::identification {
@@ -43,7 +44,40 @@ Fit with_own(const Model& model, const Data& data, const Fit& rest, const std::s
   return fit(model, data, start);
 }
 
+/// The series where two have each other's place and mounts.
+std::vector<Series> exchanged(std::vector<Series> series, std::size_t one, std::size_t other) {
+  std::swap(series[one].test, series[other].test);
+  std::swap(series[one].test.travel, series[other].test.travel);
+  return series;
+}
+
 }  // namespace
+
+std::optional<Finding> series_exchanged(const Model& model, const Data& data, const Fit& base,
+                                        Progress& progress) {
+  constexpr std::size_t most = 8;  // series: 28 pairs
+  if (data.series.size() < 2 || data.series.size() > most || data.published()) return std::nullopt;
+  std::optional<Finding> found;
+  double least = base.chi2;
+  for (const std::size_t i : data.series) {
+    for (const std::size_t k : data.series) {
+      const Series &one = model.series()[i], &other = model.series()[k];
+      if (i >= k || one.test.contact_position == other.test.contact_position) continue;
+      if (!progress.go_on(fmt::format("series {} and {} exchanged", one.name, other.name)))
+        return std::nullopt;
+      const Model now(exchanged(model.series(), i, k), model.solver());
+      const Fit trial = fit_from(now, data, base.fitted(), as_declared(base.fitted()));
+      if (!trial.report.usable() || !(trial.chi2 < least) || !test_residuals(now, data, trial).like_noise())
+        continue;
+      least = trial.chi2;
+      found = Finding{.kind = FindingKind::series_exchanged, .key = "series[" + one.name + "]", .sure = true};
+      found->what =
+          fmt::format("series {} and {} look exchanged: each at the place of the other, chi2/dof is {:.2f}",
+                      one.name, other.name, trial.chi2 / std::max(1.0, trial.dof()));
+    }
+  }
+  return found;
+}
 
 std::optional<Finding> series_of_another_specimen(const Model& model, const Data& data, const Fit& base,
                                                   Progress& progress) {

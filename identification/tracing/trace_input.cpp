@@ -55,8 +55,17 @@ void check_readings(const std::filesystem::path& file, const std::vector<Series>
     }
     const double n = static_cast<double>(f.size());
     if (f.size() >= 8 && steps / variance > std::max(0.8, 2.0 - 6.0 / std::sqrt(n))) {
-      refuse(
-          "the forces do not follow the travel: the pusher never touched the wire, or the record is noise");
+      const double largest = std::max(std::abs(*low), std::abs(*high));
+      const auto at_the_top =
+          std::ranges::count_if(f, [&](double v) { return std::abs(v) > 0.97 * largest; });
+      if (2 * at_the_top > static_cast<std::ptrdiff_t>(f.size()))
+        refuse(fmt::format(
+            "force_N is about {:.3g} in {} of {} readings: the sensor is saturated, or the pusher did "
+            "not move; leave those readings out",
+            largest, at_the_top, f.size()));
+      else
+        refuse(
+            "the forces do not follow the travel: the pusher never touched the wire, or the record is noise");
     }
   }
   if (!problems.empty()) throw base::InputError(problems);

@@ -294,6 +294,7 @@ Trace Tracer::run() {
   current_ = {};  // what is selected is in final_
   weigh();
   if (!has_finding(result_.findings, FindingKind::series_of_another_specimen) &&
+      !has_finding(result_.findings, FindingKind::series_exchanged) &&
       progress_.go_on("zero of the travel")) {
     result_.zero = check_zero(model_, data_, final_);  // before its residual counts as autocorrelated noise
     progress_.clock("zero of the travel");

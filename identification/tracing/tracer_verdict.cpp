@@ -22,11 +22,13 @@ void Tracer::conclude() {
   const bool small = added_.empty() && !result_.few_readings && !base.of_published && tolerance > 0.0 &&
                      base.left.rmse <= tolerance;
   const bool base_does = small || base.acceptable(tolerance);
-  // One series of another wire is simpler than several causes of all.
+  // Two exchanged files, or one series of another wire, are simpler than several causes of all.
   const bool several = added_.size() != 1 || !tests_.acceptable(tolerance);
   std::optional<Finding> odd;
-  if (!base_does && several && !base.of_published)
-    odd = series_of_another_specimen(model_, data_, base_, progress_);
+  if (!base_does && several && !base.of_published) {
+    odd = series_exchanged(model_, data_, base_, progress_);
+    if (!odd) odd = series_of_another_specimen(model_, data_, base_, progress_);
+  }
   result_.significant = !base_does || !added_.empty();
   Remaining& remaining = result_.remaining;
   const auto leave = [&](const Remainder& left, double share) {
@@ -37,7 +39,8 @@ void Tracer::conclude() {
     leave(before, 1.0);
     result_.kind = VerdictKind::not_explained;
     reject();
-    result_.channel = remaining.channel = to_string(Channel::wire);
+    if (odd->kind == FindingKind::series_of_another_specimen)
+      result_.channel = remaining.channel = to_string(Channel::wire);
     result_.findings.push_back(*odd);
   } else if ((small || tests_.acceptable(tolerance)) && accept()) {
     leave(tests_.left, added_.empty() ? (before.rmse > 0.0 ? 1.0 : 0.0) : share_left(before, tests_.left));

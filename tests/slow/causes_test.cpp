@@ -155,5 +155,18 @@ TEST(SlowCauses, ASeriesOfAnotherWire) {
   EXPECT_EQ(odd->key, "series[s3]");
 }
 
+// The files of two positions are exchanged.
+TEST(SlowCauses, ExchangedSeries) {
+  const auto steel = bench(1.5 * mm, 193e9, 180.0 * mm, 175.0 * mm, 4.0 * mm);
+  Experiment e = with(steel, {planted("wire.bending_stiffness_Nm2", -0.1)}, 0.05);
+  std::swap(e.series[0].readings, e.series[2].readings);
+  const Trace t = trace(e);
+  EXPECT_EQ(t.kind, VerdictKind::not_explained) << told(t);
+  const auto odd = std::ranges::find_if(
+      t.findings, [](const Finding& f) { return f.kind == FindingKind::series_exchanged; });
+  ASSERT_NE(odd, t.findings.end()) << told(t);
+  EXPECT_NE(odd->what.find("series s1 and s3 look exchanged"), std::string::npos) << odd->what;
+}
+
 }  // namespace
 }  // namespace snare::identification
