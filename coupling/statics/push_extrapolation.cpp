@@ -135,10 +135,13 @@ double extrapolate(PushPoint& p, const CoarsePoint& half, const CoarsePoint& qua
 
 /// values: one a point, fewer where points have no partners on the coarser meshes.
 void extrapolate_energies(const std::vector<Refinement>& values, std::vector<PushPoint>& points) {
-  constexpr double much = 0.1;
-  const bool all = values.size() == points.size() && std::ranges::all_of(values, [](const Refinement& r) {
-                     return r.in_order() || r.largest_change() <= much * std::abs(r.fine);
-                   });
+  constexpr double much = 0.1, nothing = 1e-6;  // of the energy there, of the largest
+  double largest = 0.0;
+  for (const Refinement& r : values) largest = std::max(largest, std::abs(r.fine));
+  const bool all =
+      values.size() == points.size() && std::ranges::all_of(values, [&](const Refinement& r) {
+        return r.in_order() || r.largest_change() <= std::max(much * std::abs(r.fine), nothing * largest);
+      });
   for (std::size_t i = 0; all && i < points.size(); ++i) points[i].energy = values[i].extrapolated();
 }
 

@@ -81,8 +81,6 @@ RodRest find_rest(const RodInMotion& constants, const Eigen::Matrix3Xd& start) {
       result.report.termination = numerics::Termination::converged;
       break;
     }
-    // The balances have not fallen: the inertia stays until they do.
-    if (result.report.iterations > 0) c = std::max(slow, c * std::clamp(residual / previous, 0.1, 2.0));
     previous = residual;
     result.report.termination = numerics::Termination::iteration_limit;
     result.report.message = "the equilibrium of the wire was not reached in the allowed iterations";
@@ -101,6 +99,7 @@ RodRest find_rest(const RodInMotion& constants, const Eigen::Matrix3Xd& start) {
     y -= rows / far;
     for (int i = 0; i < part.vertices(); ++i) y.segment<3>(part.velocity_of(i)).setZero();
     system.accept({0.0, y, rate});
+    c = std::max(slow, 0.1 * c);
   }
   result.energies = part.energies({0.0, y, rate});
   result.positions.resize(3, part.vertices());
