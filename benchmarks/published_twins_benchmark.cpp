@@ -2,9 +2,9 @@
 // readings, zeros and scatter are drawn, as those that a paper prints. One line a set and a summary as JSON.
 //   published_twins_benchmark [--experiment FILE] [--truths N] [--draws M] [--sets FILE] [--minutes M]
 //     [--out FILE]
-// The declared test with mounts that give, a rope, or a mount in which the wire slips: N truths (20) each, with M
-// draws (5) of range, readings, zeros and noise each. Coarse maps. --sets keeps every set's outcome, one line of
-// JSON each; a run that finds the file goes on where it ended. --minutes ends a run after a set.
+// The declared test with mounts that give, a rope, or a mount in which the wire slips: N truths (20) each,
+// with M draws (5) of range, readings, zeros and noise each. Coarse maps. --sets keeps every set's outcome,
+// one line of JSON each; a run that finds the file resumes there. --minutes ends a run after a set.
 
 #include "base/files.hpp"
 #include "identification/effects/catalogue.hpp"
@@ -108,7 +108,7 @@ std::vector<double> draw_ranges(const FitRanges& ranges, std::mt19937_64& random
   return to;
 }
 
-/// Laws as a paper prints them, and what they rest on.
+/// Laws as a paper prints them, with their ranges, readings and scatter.
 struct Printed {
   std::vector<QuadraticLaw> laws;
   std::vector<double> to;
@@ -143,7 +143,8 @@ std::optional<Printed> print(const Made& made, const FitRanges& ranges, std::mt1
   return printed;
 }
 
-/// Whether 95 % of the posterior of a number, given its hypothesis, hold its true value, under the first prior.
+/// Whether 95 % of the posterior of a number, given its hypothesis, hold its true value, under the first
+/// prior.
 bool covers(const HypothesisMap& map, std::size_t number, double truth) {
   double below = 0.0, all = 0.0;
   for (const PosteriorPoint& p : map.posterior) {

@@ -279,8 +279,8 @@ IdaAdvance Ida::advance(double limit, double max_step) {
   m.update_counts();
   const bool after_event = std::ranges::any_of(m.events, [](int e) { return e != 0; });
   if (code == IDA_ILL_INPUT && after_event && !m.starting) {
-    // An event function was zero at the event and, to the last bit, just after it: IDA takes that for an error,
-    // but not at a start.
+    // An event function was zero at the event and, to the last bit, just after it: IDA takes that for an
+    // error, but not at a start.
     const Eigen::VectorXd y = m.y, rate = m.rate;
     m.begin(m.time, y, rate);
     std::fill(m.events.begin(), m.events.end(), 0);

@@ -13,8 +13,8 @@ Eigen::Vector2d left_of(const Eigen::Vector2d& v) {
   return {-v.y(), v.x()};
 }
 
-// F = F1 + f1 x + f2 x^2 and s = s1 x + s2 x^2 with x = 0 at the beginning of the step, h its length, h0 that of
-// the step before:   W = integral_0^h F s' dx.
+// F = F1 + f1 x + f2 x^2 and s = s1 x + s2 x^2 with x = 0 at the beginning of the step, h its length, h0 that
+// of the step before:   W = integral_0^h F s' dx.
 double SlipWork::over(double next, double at, double from, double to) const {
   constexpr double shortest =
       0.1;  // of the step before, over this one: from a shorter one no parabola is known

@@ -47,7 +47,7 @@ struct SlipWork {
   /// turned round or the step before was short. next: slip [m]; at: parameter at its end [m]; from, to:
   /// friction at its ends [N], >= 0.
   [[nodiscard]] double over(double next, double at, double from, double to) const;
-  /// What is to be remembered of that step.
+  /// The state after that step: next [m], at [m] and from [N] as above.
   [[nodiscard]] SlipWork after(double next, double at, double from) const {
     return {next, from, at, at - end};
   }

@@ -17,8 +17,8 @@ constexpr int coarsest = 4;  // of the edges of the mesh, one
 
 /// The values that are extrapolated, in addition to the derivatives of the force. All forces on the wire are
 /// among them, and are extrapolated together or not at all: their balance holds after extrapolation as it
-/// does on every mesh. The place of the contact is extrapolated by itself, the energy at all points of a curve
-/// or at none, since only its differences mean something.
+/// does on every mesh. The place of the contact is extrapolated by itself, the energy at all points of a
+/// curve or at none, since only its differences mean something.
 constexpr std::array extrapolated_values{&PushPoint::force,
                                          &PushPoint::transverse_force,
                                          &PushPoint::axial_force,

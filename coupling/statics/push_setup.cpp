@@ -29,7 +29,8 @@ SlidingContact make_pusher(const PushProblem& test, int node) {
   return pusher;
 }
 
-// Wire resting on two supports, the pusher touching it from the other side; straight, without force or weight.
+// Wire resting on two supports, the pusher touching it from the other side; straight, without force or
+// weight.
 void rest_on_supports(PushSetup& setup, const wire::Controls& controls) {
   PushSystem& system = *setup.system;
   const wire::MaterialMesh& mesh = setup.rod->mesh();

@@ -51,8 +51,8 @@ double value_at(const PriorNumber& n, double u) {
   return n.logarithmic ? n.lower * std::pow(n.upper / n.lower, u) : n.lower + (n.upper - n.lower) * u;
 }
 
-/// Of a decimal point that slipped: its prior, and the density of what is printed by that of what was fitted; a
-/// coefficient that is divided by 100 has 100 times the density.
+/// Of a decimal point that slipped: its prior, and the density of what is printed by that of what was fitted;
+/// a coefficient that is divided by 100 has 100 times the density.
 double log_density_of_print(const Hypothesis& hypothesis) {
   return hypothesis.decimal_point ? std::log(100.0 * prior_of_a_slip) : 0.0;
 }

@@ -29,8 +29,8 @@ struct Hypothesis {
   /// The smallest linear coefficient of all series is printed a hundred times too small: prior_of_a_slip.
   bool decimal_point = false;
 };
-/// Prior probability [-], over that of any other hypothesis, that this decimal point slipped in print: 0.05 that
-/// one did in a table of twelve numbers, by one or two places, either way.
+/// Prior probability [-], over that of any other hypothesis, that this decimal point slipped in print: 0.05
+/// that one did in a table of twelve numbers, by one or two places, either way.
 inline constexpr double prior_of_a_slip = 0.05 / 48.0;
 /// The published fits as they were before they were printed. laws: one a series.
 [[nodiscard]] std::vector<QuadraticLaw> before_print(std::vector<QuadraticLaw> laws,

@@ -63,7 +63,7 @@ double largest_stress(const Evaluation& evaluation, const std::vector<Series>& s
   return stress;
 }
 
-/// A push, how far two models differ in it [N], and what it loads the wire to [Pa].
+/// A push, the difference of two models in it [N], and the largest stress of the wire [Pa].
 struct Proposal {
   std::string words;
   double difference = 0.0, stress = 0.0;

@@ -16,9 +16,9 @@ struct NextExperiment {
 };
 
 /// The push test, of a list of variations of the present ones (position, slack, load and unload, direction,
-/// speed), in which two models that explain the present data differ most, of those that load the wire little if
-/// one of them tells; beside it the measurement that settles an effect by itself, which comes first where the
-/// push may break the wire.
+/// speed), in which two models that explain the present data differ most, of those that load the wire little
+/// if one of them separates the models; with it the measurement that settles an effect by itself, which comes
+/// first where the push may break the wire.
 /// names: of the two effects. sigma: of a reading [N].
 [[nodiscard]] NextExperiment next_experiment(const Model& model, const std::vector<Setting>& one,
                                              const std::vector<Setting>& other,

@@ -15,8 +15,9 @@ namespace snare::identification {
 [[nodiscard]] std::optional<Finding> series_of_another_specimen(const Model& model, const Data& data,
                                                                 const Fit& base, Progress& progress);
 
-/// Finds the two series that the base model explains, with all others, to their noise where each has the place
-/// and the mounts of the other: their files are exchanged. None where no exchange does. base: fit of all series.
+/// Finds the two series that the base model explains, with all others, to their noise where each has the
+/// place and the mounts of the other: their files are exchanged. None where no exchange does. base: fit of
+/// all series.
 [[nodiscard]] std::optional<Finding> series_exchanged(const Model& model, const Data& data, const Fit& base,
                                                       Progress& progress);
 

@@ -64,7 +64,7 @@ def tilted(case):
 
 # Subject, relations (none: all of them), of which files, and why it is not mended.
 KNOWN = [
-    ("push", (), lifted_off_supports, "supports pull a wire that its weight lifts off them, of which a warning tells"),
+    ("push", (), lifted_off_supports, "supports pull a wire that its weight lifts off them, which a warning reports"),
     (
         "push",
         ("weak_natural_curvature_1_m",),
@@ -75,7 +75,7 @@ KNOWN = [
         "push",
         ("there_and_back",),
         curved_across_weight,
-        "a wire that is curved when free rolls over under a weight across its plane: with few points the path goes on in another shape, with many it ends with status 3",
+        "a wire that is curved when free rolls over under a weight across its plane: with few points the path continues in another shape, with many it ends with status 3",
     ),
     (
         "motion",

@@ -371,7 +371,7 @@ def work_is_energy(case, run):
 
 
 def dissipation_never_falls(case, run):
-    """What slips on and back within one step counts what is left of both ways: up to some hundredths."""
+    """A slip on and back within one step counts by its net length only: up to some hundredths."""
     one = run(case)
     slips = case.main["pusher"].get("friction", 0.0) > 0.0 or "slip_tension_N" in case.main["mount"]
     for name in set(one["series"]):

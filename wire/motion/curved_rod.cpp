@@ -76,8 +76,8 @@ Vector2d curved_moments(const RodModel& model, const DaePoint& at, int vertex) {
 }
 
 // Newton's method on dE/dk = 0, whose matrix has a band of two vertices and is negative definite near the
-// solution: it begins from the turn at each vertex over half of the edges beside it. (From a straight wire a
-// stiff and coarse one would find edges that are short because they are compressed.)
+// solution: it begins from the turn at each vertex over half of the neighbouring edges. (From a straight wire
+// a stiff and coarse one would find edges that are short because they are compressed.)
 Matrix2Xd balanced_curvatures(const RodModel& model, const RodInstant& instant, const DaePoint& at) {
   const int n = model.edges();
   const Vector2d stiffness = stiffness_of(model);

@@ -316,8 +316,8 @@ TEST(LawWire, RodIsMetByItsAngle) {
   EXPECT_TRUE(part.wrenches(y).empty());
 }
 
-/// Two wires on a free ring that a shaft, askew, pushes into corners of an energy that depends on its place in
-/// the plane.
+/// Two wires on a free ring that a shaft, askew, pushes into corners of an energy that depends on its place
+/// in the plane.
 Motion askew_in_a_ring() {
   Motion motion;
   motion.bodies = {block("visitor", 2.0, {0.02, 0.03, 0.01}), block("ring", 5.0, {0.04, 0.05, 0.06})};

@@ -244,8 +244,8 @@ TEST(PushAccuracy, SupportsSlideOnTheWayBack) {
         << "after " << i << " steps";
 }
 
-// The travel counts from the wire that sags: to first order the weight adds nothing to the force, 48 EI d/L^3,
-// and half of itself to each support.
+// The travel counts from the wire that sags: to first order the weight adds nothing to the force, 48 EI
+// d/L^3, and half of itself to each support.
 TEST(PushAccuracy, WeightOnSupportsAddsNoForce) {
   PushProblem test = declared_wire(125.0 * mm, 0.0);
   test.wire.length = 300.0 * mm;
