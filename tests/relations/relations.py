@@ -67,7 +67,7 @@ KNOWN = [
     ("push", (), lifted_off_supports, "supports pull a wire that its weight lifts off them, which a warning reports"),
     (
         "push",
-        ("weak_natural_curvature_1_m",),
+        ("weak_natural_curvature_1_m", "weak_vector_m_s2"),
         tilted,
         "a tilted pusher follows a loose wire into a shape that is unstable out of the plane, and says 0 unstable modes",
     ),
