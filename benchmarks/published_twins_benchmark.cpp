@@ -8,11 +8,7 @@
 
 #include "base/files.hpp"
 #include "identification/effects/catalogue.hpp"
-#include "identification/fitting/prediction.hpp"
-#include "identification/published/curve_likelihood.hpp"
 #include "identification/published/published_map.hpp"
-#include "numerics/cubic_spline.hpp"
-#include "results/published_map.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -24,7 +20,7 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
-#include <numbers>
+#include <optional>
 #include <random>
 
 using namespace snare;
@@ -35,9 +31,10 @@ using nlohmann::json;
 
 namespace {
 
+/// A hypothesis with numbers, in its order and in SI, of ratios over the declared value.
 struct Truth {
-  std::string kind;
-  std::vector<std::pair<std::string, double>> values;  // SI; of ratios over the declared value
+  Hypothesis hypothesis;
+  std::vector<double> values;
 };
 
 double even_in_log(std::mt19937_64& random, double low, double high) {
@@ -47,57 +44,23 @@ double even_in_log(std::mt19937_64& random, double low, double high) {
 Truth draw_truth(const std::string& kind, unsigned number) {
   std::seed_seq seeds{number, static_cast<unsigned>(kind.size()), 1U};
   std::mt19937_64 random(seeds);
-  if (kind == "mount_axial_compliance")
-    return {kind, {{"mount_axial_compliance.compliance_m_N", even_in_log(random, 3e-6, 5e-5)}}};
-  if (kind == "rope") {
-    const double bending = even_in_log(random, 0.05, 1.0);
-    return {kind,
-            {{"wire.bending_stiffness_Nm2", bending},
-             {"wire.axial_stiffness_N", even_in_log(random, 0.02, 0.5)}}};
+  const std::vector<Hypothesis> all = published_hypotheses();
+  Truth truth{*std::ranges::find(all, kind, &Hypothesis::name), {}};
+  if (kind == "mount_axial_compliance") {
+    truth.values = {even_in_log(random, 3e-6, 5e-5)};
+  } else if (kind == "rope") {  // bending and axial stiffness
+    truth.values = {even_in_log(random, 0.05, 1.0)};
+    truth.values.push_back(even_in_log(random, 0.02, 0.5));
+  } else {
+    truth.values = {even_in_log(random, 3.0, 100.0)};
   }
-  return {kind, {{"mount_slip.tension_N", even_in_log(random, 3.0, 100.0)}}};
-}
-
-/// Force over travel from first touch of every series, as far as it could be followed [m].
-struct Made {
-  std::vector<numerics::HermiteCurve> force;
-  std::vector<double> reach;
-};
-
-Made make(const Experiment& experiment, const FitRanges& ranges, const Truth& truth) {
-  std::vector<Series> series = experiment.series;
-  constexpr int points = 400;
-  const double reach = ranges.longest() + largest_zero;
-  for (Series& s : series) {
-    s.law->to = reach;
-    s.test.travel.clear();
-    for (int i = 0; i <= points; ++i) s.test.travel.push_back(reach * i / points);
-  }
-  SolverSettings solver = experiment.solver;
-  solver.elements = 96;
-  std::vector<Setting> settings;
-  for (const auto& [key, value] : truth.values) {
-    const Parameter& p = parameters().at(key);
-    settings.push_back({&p, p.parametrisation == Parametrisation::shift ? value : std::log(value)});
-  }
-  const Model model(series, solver);
-  Made made;
-  const Evaluation e = model.evaluate(settings);
-  for (std::size_t k = 0; k < series.size(); ++k) {
-    const std::vector<double>& force = e.predictions[k].force;
-    const std::vector<double>& travel = measured_displacement(model.series()[k]);
-    std::vector<double> knots(travel.begin(), travel.begin() + static_cast<std::ptrdiff_t>(force.size()));
-    if (knots.size() < 2) return {};
-    made.reach.push_back(knots.back());
-    made.force.emplace_back(std::move(knots), force);
-  }
-  return made;
+  return truth;
 }
 
 /// Ranges of the series as the prior has them [m].
 std::vector<double> draw_ranges(const FitRanges& ranges, std::mt19937_64& random) {
   const double u = std::uniform_real_distribution(0.0, 1.0)(random);
-  const double least = 2e-3, most = 18e-3;
+  const double least = FitRanges::Options{}.least, most = FitRanges::Options{}.most;
   if (u < 0.5) {
     const std::size_t taut = ranges.taut().size();
     return ranges.taut()[u < 0.25 ? 0 : taut - 1].to;
@@ -116,26 +79,27 @@ struct Printed {
   double sigma = 0.0;
 };
 
-std::optional<Printed> print(const Made& made, const FitRanges& ranges, std::mt19937_64& random) {
+std::optional<Printed> print(const std::vector<TouchCurve>& made, const FitRanges& ranges,
+                             std::mt19937_64& random) {
   std::uniform_real_distribution<double> zero(-2e-3, 2e-3);
   Printed printed;
   printed.to = draw_ranges(ranges, random);
   printed.readings = static_cast<int>(std::lround(even_in_log(random, 6.0, 200.0)));
   double largest = 0.0;
   std::vector<double> zeros;
-  for (std::size_t k = 0; k < made.force.size(); ++k) {
+  for (std::size_t k = 0; k < made.size(); ++k) {
     zeros.push_back(std::clamp(zero(random), -0.3 * printed.to[k], 0.3 * printed.to[k]));
-    if (printed.to[k] - zeros[k] > made.reach[k]) return std::nullopt;
-    largest = std::max(largest, made.force[k].value(printed.to[k] - zeros[k]));
+    if (printed.to[k] - zeros[k] > made[k].reach) return std::nullopt;
+    largest = std::max(largest, made[k].force.value(printed.to[k] - zeros[k]));
   }
   printed.sigma = largest * even_in_log(random, 0.003, 0.03);
   std::normal_distribution<double> noise(0.0, printed.sigma);
-  for (std::size_t k = 0; k < made.force.size(); ++k) {
+  for (std::size_t k = 0; k < made.size(); ++k) {
     std::vector<double> travel;
     VectorXd force(printed.readings);
     for (int i = 0; i < printed.readings; ++i) {
       travel.push_back(printed.to[k] * i / (printed.readings - 1));
-      force[i] = made.force[k].value(std::max(0.0, travel.back() - zeros[k])) + noise(random);
+      force[i] = made[k].force.value(std::max(0.0, travel.back() - zeros[k])) + noise(random);
     }
     printed.laws.push_back(printed_law(travel, force, 4));
     if (!(printed.laws.back().r_squared > 0.0)) return std::nullopt;
@@ -161,12 +125,11 @@ json outcome(Experiment experiment, const FitRanges& ranges, const Truth& truth,
   const std::vector<Hypothesis> hypotheses = published_hypotheses();
   const std::vector<HypothesisMap> maps =
       published_map(experiment, ranges.of(printed.laws), hypotheses, options);
-  const auto right =
-      std::ranges::find_if(maps, [&](const HypothesisMap& m) { return m.hypothesis.name == truth.kind; });
+  const std::string& family = truth.hypothesis.family;
   std::map<std::string, std::array<double, 2>> families;
   double log_rival = -1e300, log_right = -1e300;
   for (const HypothesisMap& m : maps) {
-    const bool own = m.hypothesis.family == right->hypothesis.family;
+    const bool own = m.hypothesis.family == family;
     for (std::size_t prior = 0; prior < 2; ++prior)
       families[m.hypothesis.family][prior] += m.probability[prior];
     double& log = own ? log_right : log_rival;
@@ -177,23 +140,18 @@ json outcome(Experiment experiment, const FitRanges& ranges, const Truth& truth,
   for (const auto& [name, p] : families) {
     const double least = std::min(p[0], p[1]);
     if (least > most) most = least, leading = name;
-    if (name != right->hypothesis.family) wrong = std::max(wrong, least);
+    if (name != family) wrong = std::max(wrong, least);
   }
   // Ends of intervals need more computed tests than the evidence does.
   MapOptions finer = options;
   finer.effective = 150.0, finer.most_batches = 60;
   const HypothesisMap posterior =
-      published_map(experiment, ranges.of(printed.laws), {right->hypothesis}, finer).front();
+      published_map(experiment, ranges.of(printed.laws), {truth.hypothesis}, finer).front();
   json covered = json::array();
-  for (std::size_t j = 0; j < truth.values.size(); ++j) {
-    const auto& numbers = right->hypothesis.numbers;
-    const auto at =
-        std::ranges::find_if(numbers, [&](const PriorNumber& n) { return n.key == truth.values[j].first; });
-    covered.push_back(
-        covers(posterior, static_cast<std::size_t>(at - numbers.begin()), truth.values[j].second));
-  }
+  for (std::size_t j = 0; j < truth.values.size(); ++j)
+    covered.push_back(covers(posterior, j, truth.values[j]));
   return {{"log_bayes_factor", std::clamp(log_right - log_rival, -1e3, 1e3)},
-          {"right", leading == right->hypothesis.family},
+          {"right", leading == family},
           {"probability", most},
           {"wrong", wrong},
           {"effective", posterior.effective},
@@ -243,6 +201,7 @@ int main(int argc, char** argv) try {
   app.add_option("--minutes", minutes);
   app.add_option("--out", out);
   CLI11_PARSE(app, argc, argv);
+  constexpr int elements = 96;  // finer than those of the maps
   const auto begin = std::chrono::steady_clock::now();
   const Experiment experiment = read_experiment(file, parameters());
   const FitRanges ranges = fit_ranges(experiment, coarse_map());
@@ -256,22 +215,24 @@ int main(int argc, char** argv) try {
   for (int t = 0; t < truths; ++t) {
     for (const std::string kind : {"mount_axial_compliance", "rope", "mount_slip"}) {
       const Truth truth = draw_truth(kind, static_cast<unsigned>(t));
-      std::optional<Made> made;
+      std::vector<TouchCurve> made;
       std::seed_seq seeds{static_cast<unsigned>(t), static_cast<unsigned>(kind.size()), 2U};
       std::mt19937_64 random(seeds);
       for (int d = 0; d < draws; ++d) {
         const bool done = std::ranges::any_of(
             sets, [&](const json& s) { return s["kind"] == kind && s["truth"] == t && s["draw"] == d; });
-        if (!made) made = make(experiment, ranges, truth);
+        if (made.empty())
+          made = computed_curves(experiment, ranges, truth.hypothesis, truth.values, elements);
         std::optional<Printed> printed;
-        while (!printed) printed = print(*made, ranges, random);
+        while (!printed) printed = print(made, ranges, random);
         if (done) continue;
         json line{{"kind", kind},
                   {"truth", t},
                   {"draw", d},
                   {"readings", printed->readings},
                   {"sigma_N", printed->sigma}};
-        for (const auto& [key, value] : truth.values) line["values"][key] = value;
+        for (std::size_t j = 0; j < truth.values.size(); ++j)
+          line["values"][truth.hypothesis.numbers[j].key] = truth.values[j];
         for (const double to : printed->to) line["to_mm"].push_back(1e3 * to);
         line.update(outcome(experiment, ranges, truth, *printed));
         fmt::print("{}\n", line.dump());

@@ -51,8 +51,8 @@ double value_at(const PriorNumber& n, double u) {
   return n.logarithmic ? n.lower * std::pow(n.upper / n.lower, u) : n.lower + (n.upper - n.lower) * u;
 }
 
-/// Of a decimal point that slipped: its prior, and the density of what is printed by that of what was fitted;
-/// a coefficient that is divided by 100 has 100 times the density.
+/// Logarithm of the prior of a decimal point that slipped, times the density of the printed coefficient over
+/// that of the fitted one: a coefficient that is divided by 100 has 100 times the density.
 double log_density_of_print(const Hypothesis& hypothesis) {
   return hypothesis.decimal_point ? std::log(100.0 * prior_of_a_slip) : 0.0;
 }
@@ -255,6 +255,12 @@ std::vector<std::vector<double>> HypothesisSampling::likely(const MapCell& leadi
 }
 
 }  // namespace
+
+std::vector<TouchCurve> computed_curves(const Experiment& experiment, const FitRanges& ranges,
+                                        const Hypothesis& hypothesis, const std::vector<double>& values,
+                                        int elements) {
+  return Computed(experiment, ranges, hypothesis, elements).curves(values);
+}
 
 const MapCell& leading_cell(const HypothesisMap& map, const FitRanges& ranges) {
   return *std::ranges::max_element(map.cells, {}, [&](const MapCell& c) {

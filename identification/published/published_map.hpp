@@ -2,7 +2,7 @@
 
 #include "identification/fitting/experiment.hpp"
 #include "identification/fitting/model.hpp"
-#include "identification/published/fit_ranges.hpp"
+#include "identification/published/curve_likelihood.hpp"
 
 #include <functional>
 #include <string>
@@ -99,6 +99,13 @@ inline constexpr const char* slips = "slips";
 /// numbers of the test. A multiple of 1 / (replicates + 1).
 [[nodiscard]] double published_p(const Experiment& experiment, const FitRanges& printed,
                                  const HypothesisMap& map, const MapOptions& options, int replicates);
+
+/// Forces [N] of the test of a hypothesis, one curve a series, for ranges up to the longest; none where one
+/// cannot be computed. values: of its numbers, SI, of ratios over the declared value; elements: of
+/// the wire at most.
+[[nodiscard]] std::vector<TouchCurve> computed_curves(const Experiment& experiment, const FitRanges& ranges,
+                                                      const Hypothesis& hypothesis,
+                                                      const std::vector<double>& values, int elements);
 
 /// The cell with most posterior mass, common ranges even in their logarithm.
 [[nodiscard]] const MapCell& leading_cell(const HypothesisMap& map, const FitRanges& ranges);

@@ -29,8 +29,6 @@ const WireMotions& run_of(const scenario::Scenario& s, const RecordSet& set) {
   return s.motions;
 }
 
-/// Long enough for the first readings of a record, whatever the scenario's own duration. A filter that runs
-/// both ways wants all of them.
 /// Whether every reading of a record comes with a sample of the computed motion.
 bool is_sampled(const Record& record, double interval) {
   constexpr double round_off = 1e-6;  // of the interval
@@ -47,6 +45,8 @@ std::vector<scenario::Sensor> sampled_more_often(std::vector<scenario::Sensor> s
   return sensors;
 }
 
+/// Long enough for the first readings of a record, whatever the scenario's own duration. A filter that runs
+/// both ways wants all of them.
 double duration_for(const Record& record, Eigen::Index readings, double interval) {
   const Eigen::Index last = (record.filter.cutoff > 0.0 ? record.times.size() : readings) - 1;
   return (std::ceil(record.times[last] / interval) + 1.0) * interval;

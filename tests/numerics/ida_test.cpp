@@ -155,14 +155,19 @@ TEST(Ida, FindsConsistentAlgebraicUnknownsAndRates) {
   EXPECT_NEAR(ida.rate()[1], -4.0, 1e-9);
 }
 
+/// Steps until an event, the limit or a failure.
+IdaAdvance advance_to_something(Ida& ida, double limit) {
+  IdaAdvance result = IdaAdvance::stepped;
+  while (result == IdaAdvance::stepped) result = ida.advance(limit);
+  return result;
+}
+
 TEST(Ida, StopsWhereAnEventFunctionIsZero) {
   Oscillator part(2.0);
   DaeSystem system({&part});
   Ida ida(system, tight());
   ida.start(0.0, displaced(), displaced_rate);
-  IdaAdvance result = IdaAdvance::stepped;
-  while (result == IdaAdvance::stepped) result = ida.advance(10.0);
-  ASSERT_EQ(result, IdaAdvance::event);
+  ASSERT_EQ(advance_to_something(ida, 10.0), IdaAdvance::event);
   EXPECT_THAT(ida.events_found(), testing::ElementsAre(-1));
   EXPECT_NEAR(ida.time(), 0.25 * M_PI, 1e-8);  // of the integration, see above
   // Going on past the event with the velocity reversed: a bounce, and the way back.
@@ -172,10 +177,7 @@ TEST(Ida, StopsWhereAnEventFunctionIsZero) {
   y[1] = -y[1];
   rate[0] = y[1];
   ida.start(ida.time(), y, rate);
-  do {
-    result = ida.advance(1.5);
-  } while (result == IdaAdvance::stepped);
-  EXPECT_EQ(result, IdaAdvance::reached_limit);
+  EXPECT_EQ(advance_to_something(ida, 1.5), IdaAdvance::reached_limit);
   EXPECT_NEAR(ida.y()[0], std::abs(std::cos(3.0)), 1e-7);
   EXPECT_EQ(ida.statistics().restarts, 2);
 }
@@ -187,13 +189,8 @@ TEST(Ida, GoesOnWhereAnEventFunctionStaysZero) {
   DaeSystem system({&part});
   Ida ida(system, tight());
   ida.start(0.0, displaced(), displaced_rate);
-  IdaAdvance result = IdaAdvance::stepped;
-  while (result == IdaAdvance::stepped) result = ida.advance(10.0);
-  ASSERT_EQ(result, IdaAdvance::event);
-  do {
-    result = ida.advance(1.5);
-  } while (result == IdaAdvance::stepped);
-  EXPECT_EQ(result, IdaAdvance::reached_limit);
+  ASSERT_EQ(advance_to_something(ida, 10.0), IdaAdvance::event);
+  EXPECT_EQ(advance_to_something(ida, 1.5), IdaAdvance::reached_limit);
   EXPECT_NEAR(ida.y()[0], std::cos(3.0), 1e-7);
 }
 

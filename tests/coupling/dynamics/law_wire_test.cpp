@@ -260,17 +260,22 @@ TEST(LawWire, StringsKeepEnergyAndMomentum) {
   EXPECT_LT(r.angular_momentum_error.norm(), 1e-8);
 }
 
+/// Friction of the shaft on every wire, by its coefficients [-].
+void rub(Motion& motion, double at_rest, double sliding) {
+  for (LawWire& w : motion.law_wires) {
+    w.friction.law = ContactFriction::smooth;
+    w.friction.static_coefficient = at_rest;
+    w.friction.dynamic_coefficient = sliding;
+    w.friction.static_speed = 0.01;
+  }
+}
+
 // With friction, damping and with the rods all that goes is accounted for.
 TEST(LawWire, LossesCloseTheBalance) {
   for (const LawWire::Kind kind : {LawWire::Kind::stretched, LawWire::Kind::rod}) {
     Motion motion = thrown(kind);
-    for (LawWire& w : motion.law_wires) {
-      w.axial_time = 1e-3;
-      w.friction.law = ContactFriction::smooth;
-      w.friction.static_coefficient = 0.3;
-      w.friction.dynamic_coefficient = 0.1;
-      w.friction.static_speed = 0.01;
-    }
+    for (LawWire& w : motion.law_wires) w.axial_time = 1e-3;
+    rub(motion, 0.3, 0.1);
     const MotionResult r = simulate(motion, fine(3.0, 1e-2), {});
     ASSERT_TRUE(r.report.usable()) << r.report.message;
     const double energy = r.energy.kinetic + r.energy.strain;
@@ -364,12 +369,7 @@ TEST(LawWire, PushesKeepEnergyAndMomentum) {
 
 TEST(LawWire, FrictionOfAPushIsLost) {
   Motion motion = askew_in_a_ring();
-  for (LawWire& w : motion.law_wires) {
-    w.friction.law = ContactFriction::smooth;
-    w.friction.static_coefficient = 0.4;
-    w.friction.dynamic_coefficient = 0.3;
-    w.friction.static_speed = 0.01;
-  }
+  rub(motion, 0.4, 0.3);
   const MotionResult r = simulate(motion, fine(3.0, 1e-2), {});
   ASSERT_TRUE(r.report.usable()) << r.report.message;
   const double energy = r.energy.kinetic + r.energy.strain;

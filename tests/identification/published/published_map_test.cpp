@@ -156,7 +156,7 @@ QuadraticLaw law_of(const TouchCurve& curve, double to, int readings, double sig
   return printed_law(travel, force, 4);
 }
 
-// Own ranges: a fine sum over the range of each series, of all scatters, is what the profile has.
+// The profile of own ranges is a fine sum over the range of each series and over all scatters.
 TEST(RangeProfile, OwnRangesAreAMeanOverEach) {
   Experiment e = read_experiment(SNARE_SOURCE_DIR "/data/experiments/published_static.toml", parameters());
   e.series.pop_back();
